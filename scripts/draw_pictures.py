@@ -28,13 +28,12 @@ from matplotlib.path import Path as Curve
 from PIL import Image
 
 import watchsim as ws
-from watchsim.geometry.loop import Loop
-from watchsim.geometry.polyline import polyline
+from watchsim.geometry.loops import Loop, polyline
 from watchsim.geometry.primitives import Arc, Line, Point
-from watchsim.render.figures.figure_style import HAIR, LABEL, SERIES, SMALL, TICK, figure, save
-from watchsim.render.figures.figure_style import title as named
 from watchsim.render.palette import BRASS, FAINT, INK, STEEL
-from watchsim.verification.bare_contacts import BareContacts
+from watchsim.render.style import HAIR, LABEL, SERIES, SMALL, TICK, figure, save
+from watchsim.render.style import title as named
+from watchsim.verification.random_problems import BareContacts
 
 ROOT = Path(__file__).resolve().parents[1]
 IMAGES = ROOT / "docs" / "images"
@@ -534,8 +533,8 @@ SVG or PDF (`--format svg,pdf`, or the ending of `-o`). In Python each is a func
 `plot_sweep` and `plot_sensitivity` ([studies](studies.md)). A notebook shows a figure that stands on the last line of a cell.
 
 A figure is as wide as it will be printed: 170 mm for a page, `--width "85 mm"` (`width=85`) for a column, letters of 6 pt or more in both. Colours can
-be told apart with every kind of colour vision, and no colour stands alone: names, dashes, marks or hatching go with it. `--dark` (`watchsim.render.dark_figure.dark`) gives any of them dark ground. The same style draws all pictures
-of these pages (`watchsim.render.figures.figure_style`). `scripts/draw_pictures.py plots` makes this page from
+be told apart with every kind of colour vision, and no colour stands alone: names, dashes, marks or hatching go with it. `--dark` (`watchsim.render.palette.dark`) gives any of them dark ground. The same style draws all pictures
+of these pages (`watchsim.render.style`). `scripts/draw_pictures.py plots` makes this page from
 
 ```
 {RUN}

@@ -12,13 +12,13 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-from watchsim.construction.coaxial.coaxial_dimensions import Coaxial
-from watchsim.construction.coaxial.coaxial_sheets import sheets as coaxial_sheets
+from watchsim.construction.coaxial import Coaxial
+from watchsim.construction.coaxial import sheets as coaxial_sheets
 from watchsim.construction.outline import angle_of, arc_between, circle, polar, turned
-from watchsim.construction.swiss_lever.swiss_lever_points import Swiss
-from watchsim.construction.swiss_lever.swiss_lever_sheets import sheets
-from watchsim.drawing.sheet import Sheet, add_circle, add_edge, add_loop, add_polygon, new_sheet, write
-from watchsim.geometry.loop import Loop
+from watchsim.construction.swiss_lever import sheets
+from watchsim.construction.swiss_lever_outlines import Swiss
+from watchsim.drawing.write import Sheet, add_circle, add_edge, add_loop, add_polygon, new_sheet, write
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Line, Point
 
 ROOT = Path(__file__).resolve().parents[1]

@@ -22,12 +22,12 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from watchsim.jit import is_cached
-from watchsim.machine_code import cache_folder
+from watchsim.jit_cache import cache_folder
 
 HERE = Path(__file__).resolve().parent
 YOUNG = 100_000  # new objects until garbage is looked for: Python's 700 are for small programs
 UNCOMPILED = ("construction", "drawing", "escapement", "geometry", "storage")  # folders
-LARGEST = ("advance.advance", "steps.advance_fixed")  # what takes half a minute and more to compile: file and function
+LARGEST = ("event_loop.advance", "moreau.advance_fixed")  # what takes half a minute and more to compile: file and function
 PATIENCE = 120.0  # s to wait for the machine code of the first worker; after that each compiles for itself
 # Matrices here are small: threads of the linear algebra would only wait for each other, at the cost of the other worker.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -91,7 +91,7 @@ def draw_anew(item: pytest.Item) -> None:
 def compile_largest() -> None:
     """By both methods, a scene that moves at once."""
     import watchsim
-    from watchsim.simulation.methods import METHODS
+    from watchsim.simulation.state import METHODS
 
     scene = watchsim.load(watchsim.profiles_dir() / "incline")
     for method in METHODS:

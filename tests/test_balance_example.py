@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import watchsim as ws
-from watchsim.mechanism.static_check import check_report, check_text
+from watchsim.mechanism.check import check_report, check_text
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "scripts" / "reports")]

@@ -13,7 +13,8 @@ from pathlib import Path
 import pytest
 from interpreter import ROOT, python
 
-from watchsim import jit, machine_code
+from watchsim import jit
+from watchsim import jit_cache as machine_code
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -78,7 +79,7 @@ def test_two_copies_of_the_package_do_not_share_machine_code(package: Path, tmp_
 
 def test_falls_back_when_the_folder_cannot_be_made(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("not a folder")
-    code = "from watchsim.machine_code import cache_folder; print(cache_folder())"
+    code = "from watchsim.jit_cache import cache_folder; print(cache_folder())"
     folder = Path(python(code, WATCHSIM_CACHE=str(tmp_path / "file" / "below"), TMPDIR=str(tmp_path)))
     assert folder.is_dir()
     assert tmp_path in folder.parents
@@ -86,7 +87,7 @@ def test_falls_back_when_the_folder_cannot_be_made(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(sys.platform != "linux", reason="the custom of Linux")
 def test_the_users_cache_folder(tmp_path: Path) -> None:
-    code = "from watchsim.machine_code import cache_folder; print(cache_folder())"
+    code = "from watchsim.jit_cache import cache_folder; print(cache_folder())"
     folder = Path(python(code, WATCHSIM_CACHE="", XDG_CACHE_HOME=str(tmp_path)))
     assert folder.parent == tmp_path / "watchsim" / "kernels"
 
@@ -99,7 +100,7 @@ def test_old_machine_code_is_forgotten(tmp_path: Path) -> None:
         os.utime(folder, (1e9 - age, 1e9 - age))
     recent = tmp_path / "kernels" / "recent"
     recent.mkdir()
-    python("from watchsim.machine_code import cache_folder; cache_folder()", WATCHSIM_CACHE=str(tmp_path))
+    python("from watchsim.jit_cache import cache_folder; cache_folder()", WATCHSIM_CACHE=str(tmp_path))
     kept = {folder.name for folder in (tmp_path / "kernels").iterdir()}
     assert {"recent", "digest0"} <= kept
     assert kept.isdisjoint({"digest1", "digest2", "digest3", "digest4", "digest5"})

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.jit import entry
-from watchsim.model.named_fields import blank, copy_of, dtype_of, row_of, words_of
+from watchsim.model import blank, copy_of, dtype_of, row_of, words_of
 
 
 class Mixed:

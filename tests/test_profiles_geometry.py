@@ -27,7 +27,7 @@ sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "scripts" / "checks")]
 import draw_profiles  # noqa: E402
 from measure_lever import measure, placed, read_layout, tomllib  # noqa: E402
 
-from watchsim.construction.swiss_lever.swiss_lever_points import Swiss  # noqa: E402
+from watchsim.construction.swiss_lever_outlines import Swiss  # noqa: E402
 
 BENCH = SCENES_BESIDE / "bench_lever.json"
 

@@ -12,8 +12,8 @@ from pathlib import Path
 import pytest
 from interpreter import ROOT
 
-from watchsim.profiles_path import profiles_dir
-from watchsim.results.read_results import read_results
+from watchsim.paths import profiles_dir
+from watchsim.results.folder import read_results
 
 LEVER = profiles_dir() / "bench_lever"
 pytestmark = [pytest.mark.skipif(sys.platform == "win32", reason="signals of Unix"), pytest.mark.usefixtures("heard")]
@@ -62,7 +62,7 @@ KEPT = [
     ("watchsim.simulation.runner", "Run._slices"),
     ("watchsim.simulation.simulate", "trajectory_of"),
     ("watchsim.analysis.summary", "tables"),
-    ("watchsim.results.write_results", "_fill"),
+    ("watchsim.results.folder", "_fill"),
     ("watchsim.storage.write", "sync_tree"),
     ("watchsim.storage.write", "sync_name"),
 ]
@@ -93,7 +93,7 @@ def test_what_was_simulated_is_kept(home: str, name: str, number: int, tmp_path:
 
 NOTHING_MADE = [
     ("watchsim.cli", "main"),
-    ("watchsim.commands.common.inputs", "load_scene"),
+    ("watchsim.commands.inputs", "load_scene"),
     ("watchsim.simulation.runner", "Run.warm_up"),
 ]
 
@@ -115,10 +115,10 @@ def test_a_second_one_stops_at_once(tmp_path: Path) -> None:
     """In the middle of writing: what stood there stays, and nothing else does."""
     folder = tmp_path / "out"
     arguments = ["run", str(LEVER), "--duration", "0.3 s", "--no-plots", "-o", str(folder)]
-    done = stopped([*arguments], "watchsim.results.write_results", "json_text", signal.SIGINT, times=2)
+    done = stopped([*arguments], "watchsim.results.folder", "json_text", signal.SIGINT, times=2)
     assert done.returncode == 130 and (folder / "summary.json").is_file(), "json_text is called once"
     before = (folder / "trajectory.npz").read_bytes()
-    done = stopped([*arguments, "--force"], "watchsim.storage.disk", "sync_file", signal.SIGTERM, times=2)
+    done = stopped([*arguments, "--force"], "watchsim.storage.write", "sync_file", signal.SIGTERM, times=2)
     assert done.returncode == 143
     assert (folder / "trajectory.npz").read_bytes() == before
     assert [path.name for path in tmp_path.iterdir()] == ["out"]
@@ -127,7 +127,7 @@ def test_a_second_one_stops_at_once(tmp_path: Path) -> None:
 @pytest.mark.slow
 def test_a_movie_under_way_is_given_up(tmp_path: Path) -> None:
     folder = tmp_path / "out"
-    home = ("watchsim.render.frame.stage", "Stage.draw")
+    home = ("watchsim.render.stage", "Stage.draw")
     done = stopped(["run", str(LEVER), "--duration", "0.3 s", "--movie", "-o", str(folder)], *home, signal.SIGINT)
     assert done.returncode == 130 and not (folder / "movie.mp4").exists()
     assert (folder / "plots" / "kinematics.png").is_file() and (folder / "summary.json").is_file()
@@ -139,9 +139,7 @@ def test_a_movie_under_way_is_given_up(tmp_path: Path) -> None:
 def test_what_the_shell_has_switched_off_stays_off(tmp_path: Path) -> None:
     """`nohup watchsim run ... &`"""
     code = "import signal; signal.signal(signal.SIGHUP, signal.SIG_IGN); signal.signal(signal.SIGINT, signal.SIG_IGN)\n"
-    code += CODE.format(
-        home="watchsim.results.write_results", name="write_events", number=int(signal.SIGHUP), times=1, pause=0.5
-    )
+    code += CODE.format(home="watchsim.results.folder", name="write_events", number=int(signal.SIGHUP), times=1, pause=0.5)
     arguments = ["run", str(LEVER), "--duration", "0.1 s", "--no-plots", "-o", str(tmp_path / "out")]
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     done = subprocess.run([sys.executable, "-c", code, *arguments], env=environment, cwd=ROOT, capture_output=True, check=False)

@@ -1,5 +1,7 @@
 """python -m watchsim"""
 
+from __future__ import annotations
+
 from watchsim.process import process
 
 process()

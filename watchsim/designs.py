@@ -17,11 +17,11 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from watchsim.construction import known
+from watchsim.construction import registry
 from watchsim.construction.design import Design
-from watchsim.drawing.sheet import Sheet
-from watchsim.scene.file.design_dimensions import chosen
-from watchsim.scene.file.read_scene import from_mapping
+from watchsim.drawing.write import Sheet
+from watchsim.scene.designed import chosen
+from watchsim.scene.load import from_mapping
 from watchsim.scene.scene import Scene
 from watchsim.storage.write import write_folder
 
@@ -108,14 +108,14 @@ def _doc(design: Design) -> str:
 
 def names() -> tuple[str, ...]:
     """The names of all designs."""
-    return known.NAMES
+    return registry.NAMES
 
 
 def __getattr__(name: str) -> Maker:
-    if name not in known.NAMES:
-        raise AttributeError(f"there is no design {name!r}; known are {', '.join(known.NAMES)}")
-    return Maker(known.design(name))
+    if name not in registry.NAMES:
+        raise AttributeError(f"there is no design {name!r}; known are {', '.join(registry.NAMES)}")
+    return Maker(registry.design(name))
 
 
 def __dir__() -> list[str]:
-    return sorted(["names", *known.NAMES])
+    return sorted(["names", *registry.NAMES])

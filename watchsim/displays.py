@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from typing import Any
 
 HOME = "watchsim.pages.notebook"
-PLAYER = "watchsim.pages.inline"
+PLAYER = "watchsim.pages.notebook"
 
 
 def notebook_html(value: object) -> str:

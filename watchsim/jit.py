@@ -15,8 +15,7 @@ import sys
 from collections.abc import Callable
 from typing import Any, TypeVar
 
-from watchsim.cache_files import checked_files, one_compiles
-from watchsim.machine_code import MOVE, cache_folder, complain
+from watchsim.jit_cache import MOVE, cache_folder, checked_files, complain, one_compiles
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 

@@ -39,7 +39,7 @@ def process() -> NoReturn:
     sys.setswitchinterval(PROMPT)
     if sys.platform == "linux":
         hold_memory()
-    from watchsim.commands.common.streams import lost_output, open_streams
+    from watchsim.commands.console import lost_output, open_streams
 
     open_streams()
     from watchsim.cli import main
@@ -51,7 +51,7 @@ def process() -> NoReturn:
     atexit._run_exitfuncs()
     lost = lost_output()
     if lost:
-        from watchsim.commands.common.console import BAD_INPUT, say
+        from watchsim.commands.console import BAD_INPUT, say
 
         say(f"What was printed could not all be written: {lost}. Send it to another place.")
         status = max(status, BAD_INPUT)

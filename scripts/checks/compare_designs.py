@@ -17,10 +17,10 @@ from pathlib import Path
 
 from try_designs import numbers
 
-from watchsim.construction import known
+from watchsim.construction import registry as known
 from watchsim.designs import Drawn
+from watchsim.escapement.fork_and_pin import Quantity
 from watchsim.escapement.measure import Function, measure
-from watchsim.escapement.quantity import Quantity
 
 NAME = "swiss_lever"
 CLOSE = 0.01  # degrees

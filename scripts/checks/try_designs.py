@@ -18,14 +18,13 @@ from collections import Counter
 from pathlib import Path
 
 from watchsim.analysis.summary import summary
-from watchsim.construction import known
-from watchsim.construction.design import Design
-from watchsim.construction.dimension import Dimension
+from watchsim.construction import registry as known
+from watchsim.construction.design import Design, Dimension
 from watchsim.designs import Drawn
 from watchsim.mechanism.overlap import overlap_faults
 from watchsim.scene.errors import SceneError
 from watchsim.simulation.simulate import simulate
-from watchsim.simulation.stops import Stop
+from watchsim.simulation.state import Stop
 
 SPREAD = 0.3  # of most dimensions, on both sides of the default
 

@@ -46,7 +46,7 @@ COMMANDS = {
 
 def judge(name: str, place: Path, second: Path, status: int, said: str) -> list[str]:
     """What is wrong after a command that met a fault."""
-    from watchsim.results.read_results import read_results
+    from watchsim.results.folder import read_results
     from watchsim.storage.write import sweep
 
     wrong = [] if status in (0, 2) else [f"exit status {status}: {said}"]

@@ -92,8 +92,8 @@ def start(arguments: list[str], place: Path, fresh: bool) -> subprocess.Popen[st
 
 def faults(place: Path) -> list[str]:
     """What is wrong with what lies there."""
-    from watchsim.results.read_results import read_results
-    from watchsim.storage.scratch_folder import PREFIX
+    from watchsim.results.folder import read_results
+    from watchsim.storage.write import PREFIX
 
     found = [f"leftover {path.relative_to(place)}: {sorted(map(str, path.rglob('*')))}" for path in place.rglob(f"{PREFIX}*")]
     if not (place / "old" / "mine.txt").is_file():

@@ -18,9 +18,8 @@ from hunt.energies import masses, of_a_step, potential, pulls, unopposed
 from hunt.generator.material import Material, reach
 from hunt.impulses import Touches
 from watchsim.scene.scene import Scene
-from watchsim.simulation.event_kinds import EventKind
-from watchsim.simulation.record.trajectory import Trajectory
-from watchsim.simulation.stops import Stop
+from watchsim.simulation.state import EventKind, Stop
+from watchsim.simulation.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 

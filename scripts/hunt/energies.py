@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from hunt.generator.material import reach
 from watchsim.scene.scene import Scene
-from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.simulation.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hunt.impulses import Touches
-from watchsim.simulation.event_kinds import EventKind
-from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.simulation.state import EventKind
+from watchsim.simulation.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 

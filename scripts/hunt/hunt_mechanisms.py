@@ -32,12 +32,11 @@ from hunt.generator.generate import FAMILIES, mechanism
 from hunt.judge import Verdict, judged
 from hunt.pool import answers
 from hunt.write import write_scene
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Line
 from watchsim.mechanism.overlap import overlaps
-from watchsim.scene.body import Body
-from watchsim.scene.file.load import load
-from watchsim.scene.scene import Scene
+from watchsim.scene.load import load
+from watchsim.scene.scene import Body, Scene
 
 CLEAN = ("fine", "sensitive")
 TOLD = 500  # mechanisms between lines that say how far it is

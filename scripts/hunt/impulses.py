@@ -15,8 +15,7 @@ from scipy.optimize import nnls
 
 from hunt.generator.material import reach
 from watchsim.geometry.primitives import TURN, Arc, Edge, Line, Point, moved
-from watchsim.scene.body import Body
-from watchsim.scene.scene import Scene
+from watchsim.scene.scene import Body, Scene
 
 Array = NDArray[np.float64]
 

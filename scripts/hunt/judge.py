@@ -31,10 +31,9 @@ from hunt.views import View, perturbed, views
 from hunt.witness import witness_fault
 from watchsim.scene.errors import SceneError
 from watchsim.scene.scene import Scene
-from watchsim.simulation.event_kinds import EventKind
-from watchsim.simulation.record.trajectory import Trajectory
 from watchsim.simulation.simulate import simulate
-from watchsim.simulation.stops import Stop
+from watchsim.simulation.state import EventKind, Stop
+from watchsim.simulation.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 

@@ -16,7 +16,7 @@ from scipy.optimize import linprog
 
 from hunt.energies import masses, pulls
 from hunt.impulses import Touches
-from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.simulation.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 

@@ -16,11 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hunt.views import View
-from watchsim.scene.body import Body
 from watchsim.scene.errors import SceneError
-from watchsim.scene.scene import Scene
-from watchsim.simulation.record.trajectory import Trajectory
-from watchsim.simulation.stops import Stop
+from watchsim.scene.scene import Body, Scene
+from watchsim.simulation.state import Stop
+from watchsim.simulation.trajectory import Trajectory
 
 if TYPE_CHECKING:
     from hunt.judge import Judge

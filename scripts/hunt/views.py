@@ -15,8 +15,7 @@ from numpy.typing import NDArray
 
 from hunt.generator.material import apart
 from watchsim.geometry.primitives import Point
-from watchsim.scene.body import Body
-from watchsim.scene.scene import Scene
+from watchsim.scene.scene import Body, Scene
 
 Array = NDArray[np.float64]
 

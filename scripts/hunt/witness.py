@@ -16,10 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hunt.open_motion import open_motion
-from watchsim.simulation.event_kinds import EventKind
-from watchsim.simulation.methods import MOREAU
-from watchsim.simulation.record.trajectory import Trajectory
 from watchsim.simulation.simulate import simulate
+from watchsim.simulation.state import MOREAU, EventKind
+from watchsim.simulation.trajectory import Trajectory
 
 if TYPE_CHECKING:
     from hunt.judge import Judge

@@ -9,12 +9,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from watchsim.drawing.dxf.write_dxf import dxf_text
-from watchsim.geometry.loop import Loop
+from watchsim.drawing.write import dxf_text
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Line
-from watchsim.scene.body import Body
-from watchsim.scene.file.keys.write_toml import toml_text
-from watchsim.scene.scene import Scene
+from watchsim.scene.scene import Body, Scene
+from watchsim.scene.write_toml import toml_text
 
 
 def write_scene(scene: Scene, path: Path) -> Path:

@@ -14,7 +14,7 @@ import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
-from watchsim.machine_code import PACKAGE, cache_folder
+from watchsim.jit_cache import PACKAGE, cache_folder
 
 
 def dependents(changed: Path) -> set[str]:

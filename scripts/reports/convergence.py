@@ -17,14 +17,13 @@ from pathlib import Path
 import numpy as np
 from measured import REDRAW, keep, kept
 
-from watchsim.profiles_path import profiles_dir
-from watchsim.scene.file.load import load
-from watchsim.scene.force import Damping
-from watchsim.scene.recording import EVERYTHING
-from watchsim.scene.scene import Scene
-from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.paths import profiles_dir
+from watchsim.scene.forces import Damping
+from watchsim.scene.load import load
+from watchsim.scene.scene import EVERYTHING, Scene
 from watchsim.simulation.simulate import simulate
-from watchsim.verification.closed_forms import Incline, incline_state
+from watchsim.simulation.trajectory import Trajectory
+from watchsim.verification.checks import Incline, incline_state
 from watchsim.verification.hard_cases import dry_balance
 from watchsim.verification.repeated_impacts import pulled_block
 
@@ -135,9 +134,9 @@ def order(steps: list[float], errors: list[float]) -> float:
 
 def picture(found: Found, path: Path) -> None:
     """Errors over steps, doubly logarithmic, with a line of slope 1."""
-    from watchsim.render.figures.figure_style import CURVE, MARKERS, SERIES, dress, figure, key, save
-    from watchsim.render.figures.figure_style import title as named
     from watchsim.render.palette import FAINT
+    from watchsim.render.style import CURVE, MARKERS, SERIES, dress, figure, key, save
+    from watchsim.render.style import title as named
 
     made = figure(height=80.0, layout="constrained")
     axes = made.subplots(1, 2)

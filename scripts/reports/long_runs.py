@@ -20,17 +20,15 @@ import numpy as np
 from measured import REDRAW, keep, kept
 from numpy.typing import NDArray
 
-from watchsim.analysis.timing.beats import DAY, beats
-from watchsim.analysis.timing.escape_wheel import missed_beats
-from watchsim.profiles_path import profiles_dir
-from watchsim.scene.file.load import load
-from watchsim.scene.recording import EVERYTHING
+from watchsim.analysis.escape_wheel import missed_beats
+from watchsim.analysis.timing import DAY, beats
+from watchsim.paths import profiles_dir
+from watchsim.scene.load import load
 from watchsim.scene.roles import roles
-from watchsim.scene.scene import Scene
-from watchsim.simulation.event_kinds import EventKind
-from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.scene.scene import EVERYTHING, Scene
 from watchsim.simulation.simulate import simulate
-from watchsim.simulation.stops import Stop
+from watchsim.simulation.state import EventKind, Stop
+from watchsim.simulation.trajectory import Trajectory
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -293,9 +291,9 @@ def _kept() -> list[Course]:
 
 def picture(runs: Sequence[Course | Long], path: Path) -> None:
     """Amplitude from its last value, the residual of the account, and its share of the work put in, over time."""
-    from watchsim.render.figures.figure_style import CURVE, SERIES, dress, figure, key, save
-    from watchsim.render.figures.figure_style import title as named
     from watchsim.render.palette import FAINT
+    from watchsim.render.style import CURVE, SERIES, dress, figure, key, save
+    from watchsim.render.style import title as named
 
     made = figure(height=62.0, layout="constrained")
     axes = made.subplots(1, 3)

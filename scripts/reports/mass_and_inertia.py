@@ -19,10 +19,10 @@ from draw_profiles import by_hand  # noqa: E402
 from measure_lever import moments  # noqa: E402
 
 import watchsim as ws  # noqa: E402
-from watchsim.geometry.loop import Loop  # noqa: E402
+from watchsim.geometry.loops import Loop  # noqa: E402
+from watchsim.geometry.meshes import plate  # noqa: E402
 from watchsim.geometry.primitives import TURN, Arc, Line  # noqa: E402
-from watchsim.geometry.solids.mass import section  # noqa: E402
-from watchsim.geometry.solids.meshes import plate  # noqa: E402
+from watchsim.geometry.solids import section  # noqa: E402
 
 ROOT = SCRIPTS.parent
 DOCUMENT = ROOT / "docs" / "guide" / "mass-and-inertia.md"

@@ -30,7 +30,7 @@ from reference.gear_friction import FASTEST, SLOWEST  # noqa: E402
 from reference.gear_friction import mean_speed as exact_speed  # noqa: E402
 
 from watchsim.simulation.simulate import simulate  # noqa: E402
-from watchsim.simulation.stops import Stop  # noqa: E402
+from watchsim.simulation.state import Stop  # noqa: E402
 
 DECADES = ((0.0, 1e-8), (1e-8, 1e-6), (1e-6, 1e-5), (1e-5, 1e-4), (1e-4, 1e-3), (1e-3, 0.15), (0.15, 2.0))
 KINKS = """A bar slides under a round follower that a torque presses on. Its level top rises (concave) or falls (convex) by an

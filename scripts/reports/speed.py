@@ -21,17 +21,17 @@ import time
 from pathlib import Path
 from typing import Any
 
-from watchsim.bench.engines.world import is_installed
+from watchsim.bench.compare import whole
+from watchsim.bench.engines import is_installed
 from watchsim.bench.growth import Study, studies
-from watchsim.bench.profile.run_profile import profile_of, profile_text
+from watchsim.bench.profile import profile_of, profile_text
 from watchsim.bench.scenarios import Scenario, scenarios
-from watchsim.bench.wall_clock import whole
 from watchsim.commands.bench import measured, write
-from watchsim.profiles_path import profiles_dir
-from watchsim.render.figures.speed_plot import plot_speed
-from watchsim.scene.file.load import load
-from watchsim.simulation.methods import MOREAU
+from watchsim.paths import profiles_dir
+from watchsim.render.phase_bands import plot_speed
+from watchsim.scene.load import load
 from watchsim.simulation.simulate import simulate
+from watchsim.simulation.state import MOREAU
 
 ROOT = Path(__file__).resolve().parents[2]
 OWN = "pfeiffer-glocker"

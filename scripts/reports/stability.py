@@ -22,10 +22,10 @@ import numpy as np
 from measured import REDRAW, keep, kept
 
 import watchsim as ws
-from watchsim.render.figures.figure_style import MAP, SERIES, SMALL, dress, figure, save
-from watchsim.render.figures.figure_style import title as named
 from watchsim.render.palette import FAINT
-from watchsim.verification.all_checks import verify
+from watchsim.render.style import MAP, SERIES, SMALL, dress, figure, save
+from watchsim.render.style import title as named
+from watchsim.verification.verify import verify
 
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from watchsim.profiles_path import profiles_dir
-from watchsim.scene.file.load import load
-from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.paths import profiles_dir
+from watchsim.scene.load import load
 from watchsim.simulation.simulate import simulate
+from watchsim.simulation.trajectory import Trajectory
 
 
 @pytest.fixture(scope="session")

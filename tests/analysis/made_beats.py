@@ -12,14 +12,13 @@ from itertools import pairwise
 
 import numpy as np
 
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Line
-from watchsim.scene.body import Body
-from watchsim.scene.force import Contact, Side, Spring, Torque
-from watchsim.scene.scene import Scene
-from watchsim.simulation.event_kinds import EVENT_DTYPE, EventKind
-from watchsim.simulation.record.trajectory import Pair, Trajectory
-from watchsim.simulation.stops import Stop
+from watchsim.scene.forces import Contact, Side, Spring, Torque
+from watchsim.scene.scene import Body, Scene
+from watchsim.simulation.recording import Pair
+from watchsim.simulation.state import EVENT_DTYPE, EventKind, Stop
+from watchsim.simulation.trajectory import Trajectory
 
 HERTZ = 4.0
 PERIOD = 1.0 / HERTZ

@@ -10,13 +10,12 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Line, Point
-from watchsim.profiles_path import profiles_dir
-from watchsim.scene.body import Body
-from watchsim.scene.file.load import load
-from watchsim.scene.force import Contact, Side, Torque
-from watchsim.scene.scene import Scene
+from watchsim.paths import profiles_dir
+from watchsim.scene.forces import Contact, Side, Torque
+from watchsim.scene.load import load
+from watchsim.scene.scene import Body, Scene
 
 NAMES = {"wheel": "rad", "lever": "anker", "balance": "unruh", "banking": "stifte"}
 EDGES = 6  # of a tooth of the Swiss lever's wheel; the first two meet at its toe

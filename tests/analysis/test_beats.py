@@ -31,17 +31,15 @@ from render.fake_runs import disc_run
 from scipy.special import ellipk
 
 from watchsim.analysis.summary import summary, summary_text
-from watchsim.analysis.timing.averages import averages, headline, last_window, mean_and_error, mean_over
-from watchsim.analysis.timing.beats import DAY, beats
-from watchsim.analysis.timing.timegrapher import amplitude_deg, intervals, timegrapher
-from watchsim.analysis.timing.whole_run import whole_run
+from watchsim.analysis.timegrapher import amplitude_deg, intervals, timegrapher
+from watchsim.analysis.timing import DAY, averages, beats, headline, last_window, mean_and_error, mean_over, whole_run
 from watchsim.cli import main
-from watchsim.commands.common.console import FINE
+from watchsim.commands.console import FINE
 from watchsim.scene.errors import SceneError
-from watchsim.scene.file.load import load
-from watchsim.scene.recording import STATISTICS
-from watchsim.simulation.event_kinds import EventKind
+from watchsim.scene.load import load
+from watchsim.scene.scene import STATISTICS
 from watchsim.simulation.simulate import simulate
+from watchsim.simulation.state import EventKind
 
 # Are amplitude, rate and beat error those of motions that are known exactly?
 

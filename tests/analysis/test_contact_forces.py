@@ -15,20 +15,19 @@ from scipy.optimize import brentq
 
 import watchsim as ws
 from watchsim.analysis.balanced_forces import Mechanism
-from watchsim.analysis.contact_forces import forces
-from watchsim.analysis.promised import not_begun
-from watchsim.analysis.verdicts.equilibrium.lever_arms import arms
-from watchsim.geometry.loop import Loop
+from watchsim.analysis.expectations import not_begun
+from watchsim.analysis.forces import forces
+from watchsim.analysis.watch import arms
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc
 from watchsim.mechanism.compile import compile_scene
-from watchsim.profiles_path import profiles_dir
-from watchsim.scene.body import Body
-from watchsim.scene.file.load import load
-from watchsim.scene.force import Contact, Damping, Side, Spring, Torque
-from watchsim.scene.scene import Scene
-from watchsim.simulation.event_kinds import EventKind
-from watchsim.simulation.record.trajectory import Array, Trajectory
+from watchsim.paths import profiles_dir
+from watchsim.scene.forces import Contact, Damping, Side, Spring, Torque
+from watchsim.scene.load import load
+from watchsim.scene.scene import Body, Scene
 from watchsim.simulation.simulate import simulate
+from watchsim.simulation.state import EventKind
+from watchsim.simulation.trajectory import Array, Trajectory
 
 # Are forces at contacts and pivots those of statics and dynamics on paper, and those that move the run itself?
 

@@ -14,11 +14,10 @@ from analysis.made_beats import Events, balance_only, lever_scene
 from numpy.polynomial import Polynomial
 from scipy.integrate import quad
 
-from watchsim.analysis.efficiency import efficiency
-from watchsim.analysis.timeline.flows import Flows, flows
-from watchsim.analysis.weights_fallen import work_of_gravity
+from watchsim.analysis.energy import efficiency, work_of_gravity
+from watchsim.analysis.flows import Flows, flows
 from watchsim.mechanism.compile import compile_scene
-from watchsim.model.records import (
+from watchsim.model import (
     BODY,
     BODY_PAIR,
     CONTACT,
@@ -34,8 +33,8 @@ from watchsim.model.records import (
     Model,
     records,
 )
-from watchsim.scene.file.load import load
-from watchsim.scene.force import Damping, Torque
+from watchsim.scene.forces import Damping, Torque
+from watchsim.scene.load import load
 from watchsim.scene.scene import Scene
 from watchsim.simulation.simulate import simulate
 

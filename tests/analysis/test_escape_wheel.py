@@ -11,18 +11,14 @@ import pytest
 from analysis.made_beats import DEGREE, PERIOD, Events, balance_only, lever_run, lever_scene, polygon, star, steady_swings
 from render.fake_runs import disc_run, watch_run
 
+from watchsim.analysis.escape_wheel import advance, missed_beats, progress, standstill, why_no_timing
 from watchsim.analysis.summary import summary, summary_text
-from watchsim.analysis.timing.beats import beats
-from watchsim.analysis.timing.escape_wheel import advance, missed_beats, progress
-from watchsim.analysis.timing.no_timing import why_no_timing
-from watchsim.analysis.timing.rows_at_hand import is_recorded
-from watchsim.analysis.timing.standstill import standstill
-from watchsim.analysis.timing.teeth import pitch, tooth_count
-from watchsim.commands.common.run_pictures import filmed, last_beats
-from watchsim.geometry.loop import Loop
+from watchsim.analysis.timing import beats, is_recorded, pitch, tooth_count
+from watchsim.commands.pictures import filmed, last_beats
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Line
 from watchsim.scene.roles import Roles, drive_direction, keeps_time, partners, roles
-from watchsim.simulation.event_kinds import EventKind
+from watchsim.simulation.state import EventKind
 
 # Are missed beats counted and standing watches noticed?
 

@@ -9,15 +9,13 @@ from pathlib import Path
 import pytest
 from analysis.made_beats import lever_scene
 
-from watchsim.analysis.expectations import KNOWN, judge, judged, mistake, mistakes, not_judged, unit_of
-from watchsim.analysis.promised import USUAL, expectation_faults, impossible, not_begun
-from watchsim.analysis.summary import summary
+from watchsim.analysis.expectations import USUAL, expectation_faults, impossible, not_begun
+from watchsim.analysis.summary import KNOWN, judge, judged, mistake, mistakes, not_judged, summary, unit_of
 from watchsim.cli import main
-from watchsim.commands.common.console import BAD_INPUT
-from watchsim.profiles_path import profiles_dir
-from watchsim.scene.body import Body
-from watchsim.scene.file.load import load
-from watchsim.scene.scene import Expectation, Scene
+from watchsim.commands.console import BAD_INPUT
+from watchsim.paths import profiles_dir
+from watchsim.scene.load import load
+from watchsim.scene.scene import Body, Expectation, Scene
 from watchsim.simulation.simulate import simulate
 
 # Is what a scene promises judged in its own units, and are slips in keys caught?

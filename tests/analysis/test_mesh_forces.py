@@ -11,7 +11,7 @@ import pytest
 from scene.made_gears import read
 
 import watchsim as ws
-from watchsim.analysis.mesh_forces import Loads, mesh_forces
+from watchsim.analysis.forces import Loads, mesh_forces
 from watchsim.scene.errors import SceneError
 
 # Are the loads of bearings between gears those that statics and dynamics give on paper?

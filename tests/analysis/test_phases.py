@@ -14,22 +14,19 @@ from analysis.made_beats import BANKED, CATCH, DEGREE, DROP, ENTRY, LOCK, OMEGA,
 from every_time import few
 from render.fake_runs import disc_run
 
-from watchsim.analysis.beat_tables import PHASE_COLUMNS, beats_csv, phases_csv
-from watchsim.analysis.timeline.shown_beats import shown_beats
-from watchsim.analysis.timeline.timeline_table import timeline_text
-from watchsim.analysis.timing.beats import beats
-from watchsim.analysis.timing.body_contacts import held
-from watchsim.analysis.timing.marks.anchor_marks import Marks, anchor_marks
-from watchsim.analysis.timing.phases import phases
-from watchsim.pages.timing_sheet.phase_tables import phase_tables
-from watchsim.profiles_path import profiles_dir
-from watchsim.render.figures.passing_phases import passing
-from watchsim.scene.file.load import load
-from watchsim.scene.force import Spring
+from watchsim.analysis.headlines import PHASE_COLUMNS, beats_csv, phases_csv
+from watchsim.analysis.phases import Marks, anchor_marks, phases
+from watchsim.analysis.timeline import shown_beats, timeline_text
+from watchsim.analysis.timing import beats, held
+from watchsim.pages.timing_sheet import phase_tables
+from watchsim.paths import profiles_dir
+from watchsim.render.style import passing
+from watchsim.scene.forces import Spring
+from watchsim.scene.load import load
 from watchsim.scene.roles import roles
-from watchsim.simulation.event_kinds import EventKind
-from watchsim.simulation.record.trajectory import Trajectory
 from watchsim.simulation.simulate import simulate
+from watchsim.simulation.state import EventKind
+from watchsim.simulation.trajectory import Trajectory
 
 # Are the phases of a beat those that were put into it?
 

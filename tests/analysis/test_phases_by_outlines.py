@@ -15,19 +15,18 @@ from shapely.affinity import affine_transform
 from shapely.ops import nearest_points
 
 import watchsim as ws
+from watchsim.analysis.phases import Phase, phases
 from watchsim.analysis.summary import summary, summary_text, tables
-from watchsim.analysis.timeline.shown_beats import shown_beats
-from watchsim.analysis.timing.averages import mean_over
-from watchsim.analysis.timing.beats import beats
-from watchsim.analysis.timing.phases import Phase, phases
+from watchsim.analysis.timeline import shown_beats
+from watchsim.analysis.timing import beats, mean_over
 from watchsim.escapement.measure import measure
 from watchsim.geometry.primitives import Arc, Edge
-from watchsim.profiles_path import profiles_dir
-from watchsim.scene.body import Body
-from watchsim.scene.file.load import load
+from watchsim.paths import profiles_dir
+from watchsim.scene.load import load
 from watchsim.scene.roles import hinged_pallets
-from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.scene.scene import Body
 from watchsim.simulation.simulate import simulate
+from watchsim.simulation.trajectory import Trajectory
 
 # Are the phases of cylinder and duplex those that the outlines show, placed by the motion alone?
 

@@ -15,18 +15,15 @@ from analysis.made_faults import chipped, eccentric, knocked, swiss, unguarded
 from numpy.typing import NDArray
 from scipy.io import wavfile
 
-from watchsim.analysis.sound.bursts import SAMPLES, TONES, Ringing
-from watchsim.analysis.sound.score import score
-from watchsim.analysis.sound.wav import sound
-from watchsim.analysis.tape import tape
-from watchsim.analysis.timing.beats import beats
-from watchsim.analysis.timing.timegrapher import timegrapher
-from watchsim.profiles_path import profiles_dir
-from watchsim.scene.file.load import load
+from watchsim.analysis.sound import SAMPLES, TONES, Ringing, score, sound
+from watchsim.analysis.timegrapher import tape, timegrapher
+from watchsim.analysis.timing import beats
+from watchsim.paths import profiles_dir
+from watchsim.scene.load import load
 from watchsim.scene.scene import Scene
-from watchsim.simulation.event_kinds import EventKind
-from watchsim.simulation.record.trajectory import Trajectory
 from watchsim.simulation.simulate import simulate
+from watchsim.simulation.state import EventKind
+from watchsim.simulation.trajectory import Trajectory
 
 # What does somebody hear who has nothing but the WAV file?
 

@@ -14,15 +14,12 @@ from analysis.made_beats import lever_run
 from render.fake_runs import disc_run, slide_run
 
 import watchsim as ws
-from watchsim.analysis.doubts import doubts
 from watchsim.analysis.energy import energy_shares
-from watchsim.analysis.error_bars import NUMBERS, with_error_bars
-from watchsim.analysis.headlines import expected_text, with_scatter
-from watchsim.analysis.summary import summary, summary_text, tables
+from watchsim.analysis.headlines import doubts, expected_text, with_scatter
+from watchsim.analysis.summary import NUMBERS, summary, summary_text, tables, with_error_bars
 from watchsim.mechanism.compile import scene_size
 from watchsim.scene.scene import Expectation
-from watchsim.simulation.methods import MOREAU
-from watchsim.simulation.stops import Stop
+from watchsim.simulation.state import MOREAU, Stop
 
 # Does the summary hold every promised number, and does its text read as a watchmaker expects?
 

@@ -14,22 +14,20 @@ from analysis.made_beats import lever_run
 from every_time import few
 
 import watchsim as ws
-from watchsim.analysis.beat_tables import phases_csv
-from watchsim.analysis.timeline.line_spring_rows import held_by_lines, line_spring_energies, line_spring_power
-from watchsim.analysis.timeline.rows import timeline
-from watchsim.analysis.timeline.shown_beats import shown_beats
-from watchsim.analysis.timeline.timeline_table import timeline_text
-from watchsim.analysis.timing.beats import beats
+from watchsim.analysis.flows import held_by_lines, line_spring_energies, line_spring_power
+from watchsim.analysis.headlines import phases_csv
+from watchsim.analysis.timeline import shown_beats, timeline, timeline_text
+from watchsim.analysis.timing import beats
 from watchsim.cli import main
-from watchsim.commands.common.console import BAD_INPUT, FINE
+from watchsim.commands.console import BAD_INPUT, FINE
 from watchsim.mechanism.compile import compile_scene
-from watchsim.profiles_path import profiles_dir
-from watchsim.render.figures.phase_plot import plot_phases
-from watchsim.scene.file.load import load
-from watchsim.scene.force import Damping, Spring, Torque
-from watchsim.simulation.event_kinds import EventKind
-from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.paths import profiles_dir
+from watchsim.render.phase_bands import plot_phases
+from watchsim.scene.forces import Damping, Spring, Torque
+from watchsim.scene.load import load
 from watchsim.simulation.simulate import simulate
+from watchsim.simulation.state import EventKind
+from watchsim.simulation.trajectory import Trajectory
 
 # Do the books of every phase close, and do its times and angles agree with what the events say?
 

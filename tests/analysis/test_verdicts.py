@@ -15,27 +15,17 @@ from every_time import few
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from watchsim.analysis.timing.beats import beats
-from watchsim.analysis.timing.teeth import pitch
-from watchsim.analysis.verdicts.equilibrium.in_force import in_force
-from watchsim.analysis.verdicts.equilibrium.lever_arms import arms
-from watchsim.analysis.verdicts.equilibrium.statics import at_lever
-from watchsim.analysis.verdicts.faces import face
-from watchsim.analysis.verdicts.overbanking import overbanking
-from watchsim.analysis.verdicts.settling import unsettled
-from watchsim.analysis.verdicts.tooth_lean import Teeth, teeth
-from watchsim.analysis.verdicts.unlocked import unlocked
-from watchsim.analysis.verdicts.verdict import verdict
-from watchsim.analysis.verdicts.verdict_kinds import Verdict
-from watchsim.analysis.verdicts.watch import watch_of
-from watchsim.profiles_path import profiles_dir
-from watchsim.scene.body import Body
-from watchsim.scene.file.load import load
-from watchsim.scene.force import Damping, Spring, Torque
+from watchsim.analysis.timing import beats, pitch
+from watchsim.analysis.verdict import overbanking, unsettled, verdict
+from watchsim.analysis.verdict_kinds import Verdict
+from watchsim.analysis.watch import Teeth, arms, at_lever, face, in_force, teeth, unlocked, watch_of
+from watchsim.paths import profiles_dir
+from watchsim.scene.forces import Damping, Spring, Torque
+from watchsim.scene.load import load
 from watchsim.scene.roles import roles
-from watchsim.scene.scene import Scene
-from watchsim.simulation.event_kinds import EventKind
+from watchsim.scene.scene import Body, Scene
 from watchsim.simulation.simulate import simulate
+from watchsim.simulation.state import EventKind
 
 # Is a watch that fails told from one that ticks, and is it said how it fails?
 

@@ -11,21 +11,17 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from watchsim.bench.compare import compare
-from watchsim.bench.comparison_table import table
-from watchsim.bench.engines.convex import Circle, convex_pieces
-from watchsim.bench.engines.world import is_installed
-from watchsim.bench.sampled_swings import swing
-from watchsim.bench.scenarios import scenarios
-from watchsim.bench.wall_clock import whole
+from watchsim.bench.compare import compare, table, whole
+from watchsim.bench.engines import Circle, convex_pieces, is_installed
+from watchsim.bench.scenarios import scenarios, swing
 from watchsim.cli import main
 from watchsim.commands import bench
-from watchsim.commands.common.console import FINE
-from watchsim.geometry.loop import Loop
+from watchsim.commands.console import FINE
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Line
-from watchsim.profiles_path import profiles_dir
-from watchsim.scene.file.load import load
-from watchsim.simulation.methods import EVENT_DRIVEN, MOREAU
+from watchsim.paths import profiles_dir
+from watchsim.scene.load import load
+from watchsim.simulation.state import EVENT_DRIVEN, MOREAU
 
 # Is the comparison fair and told in full: right errors, spread, references that another method confirms?
 

@@ -11,17 +11,16 @@ import pytest
 from test_cell_travel import coordinates, curve, each_case, made, poses, seen
 
 import watchsim as ws
-from watchsim.candidates.cell_frame import MOVEMENT, TRAVEL, TURN, axes_of, choose_frames, seen_from
-from watchsim.candidates.symmetry import turn_symmetry
-from watchsim.geometry.loop import Loop
+from watchsim.contact.cell_frames import MOVEMENT, TRAVEL, TURN, axes_of, choose_frames, seen_from
+from watchsim.contact.symmetry import turn_symmetry
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Edge, Line, moved
 from watchsim.mechanism.compile import compile_scene
-from watchsim.mechanism.contact_features import features
-from watchsim.model.records import BODY, BODY_PAIR, FIXED, FREE, PIVOT, SLIDE, Model, Records, records
-from watchsim.profiles_path import profiles_dir
-from watchsim.scene.body import Body
-from watchsim.scene.force import Contact, Side
-from watchsim.scene.scene import Scene
+from watchsim.mechanism.contacts import features
+from watchsim.model import BODY, BODY_PAIR, FIXED, FREE, PIVOT, SLIDE, Model, Records, records
+from watchsim.paths import profiles_dir
+from watchsim.scene.forces import Contact, Side
+from watchsim.scene.scene import Body, Scene
 
 # Is a cell a small step for the outermost point of the body that its coordinate moves, and do cells make whole turns?
 

@@ -16,17 +16,14 @@ from every_time import few
 from pair_scenes import DEGREES, body_pose, outline, two_bodies
 from true_contacts import touches
 
-from watchsim.candidates import cell_grid
-from watchsim.candidates.broad_phase import PairSearch
-from watchsim.candidates.cell_motion import CellMotion
-from watchsim.candidates.normal_fans import Regions
-from watchsim.geometry.loop import Loop
+from watchsim.contact import cells as cell_grid
+from watchsim.contact.broad_phase import PairSearch, Regions
+from watchsim.contact.cell_frames import CellMotion
+from watchsim.geometry.loops import Loop
 from watchsim.mechanism.compile import Compiled, compile_scene
-from watchsim.model.records import ARC, CORNER, FULL, LINE
-from watchsim.scene.body import Body
-from watchsim.scene.force import Contact, Side
-from watchsim.scene.gearing import Geared
-from watchsim.scene.scene import Scene
+from watchsim.model import ARC, CORNER, FULL, LINE
+from watchsim.scene.forces import Contact, Side
+from watchsim.scene.scene import Body, Geared, Scene
 
 # How far can a primitive get from where it is drawn, while the cell coordinates of two bodies change a little?
 

@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from pair_scenes import DEGREES, outline
 from true_contacts import touches
 
-from watchsim.candidates import cell_grid
-from watchsim.candidates.cell_lookup import (
+from watchsim.contact import cells as cell_grid
+from watchsim.contact.cell_lookup import (
     ALL,
     LISTED,
     MARGIN,
@@ -26,16 +26,14 @@ from watchsim.candidates.cell_lookup import (
     find_slot,
     time_in_cell,
 )
-from watchsim.candidates.cell_table import CellFinder, PairCells
-from watchsim.candidates.pair_cache import forget
-from watchsim.geometry.loop import Loop
+from watchsim.contact.cells import CellFinder, PairCells, forget
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Edge, Line, moved
 from watchsim.jit import callable_kernel
 from watchsim.mechanism.compile import Compiled, compile_scene
-from watchsim.model.records import Cells
-from watchsim.scene.body import Body
-from watchsim.scene.force import Contact, Side
-from watchsim.scene.scene import Scene
+from watchsim.model import Cells
+from watchsim.scene.forces import Contact, Side
+from watchsim.scene.scene import Body, Scene
 
 # Does a cell's list hold every pair of primitives that touches anywhere in the cell and its margin?
 

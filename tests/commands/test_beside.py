@@ -14,9 +14,9 @@ import pytest
 from interpreter import ROOT
 
 from watchsim.commands.beside import Meanwhile, can_copy
-from watchsim.profiles_path import profiles_dir
+from watchsim.paths import profiles_dir
 from watchsim.results.tables import EventLines, write_events
-from watchsim.scene.file.load import load
+from watchsim.scene.load import load
 from watchsim.simulation.simulate import simulate
 
 SAME = ("events.csv", "beats.csv", "phases.csv", "plots/kinematics.png", "plots/last_beats.png")

@@ -14,7 +14,7 @@ from interpreter import ROOT as COPY
 from interpreter import python
 
 from watchsim.cli import COMMANDS, main
-from watchsim.results.read_results import read_results
+from watchsim.results.folder import read_results
 
 ROOT = Path(__file__).resolve().parents[2]
 LEVER = ROOT / "profiles" / "bench_lever" / "scene.toml"

@@ -10,7 +10,7 @@ import trimesh
 
 import watchsim as ws
 from watchsim.cli import main
-from watchsim.geometry.solids.mass import section
+from watchsim.geometry.solids import section
 
 ROOT = Path(__file__).resolve().parents[2]
 SWISS = str(ROOT / "profiles" / "swiss_lever")

@@ -13,12 +13,12 @@ import pytest
 from interpreter import ROOT
 
 from watchsim.cli import main
-from watchsim.profiles_path import profiles_dir
+from watchsim.paths import profiles_dir
 from watchsim.results.tables import cell
 from watchsim.storage.destination import secure_file
 from watchsim.storage.write import write_file
-from watchsim.studies.study_table import csv_text
-from watchsim.studies.workers.journal import Journal
+from watchsim.studies.study_report import csv_text
+from watchsim.studies.workers import Journal
 
 LEVER = profiles_dir() / "bench_lever"
 

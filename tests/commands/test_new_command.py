@@ -8,8 +8,8 @@ import pytest
 from every_time import few
 
 from watchsim.cli import main
-from watchsim.construction.known import NAMES
-from watchsim.scene.file.load import load
+from watchsim.construction.registry import NAMES
+from watchsim.scene.load import load
 
 
 def test_writes_a_scene_that_loads(tmp_path, capsys):

@@ -17,13 +17,13 @@ from storage.disk_faults import Disk, watched
 
 from watchsim.cli import main
 from watchsim.commands import run as run_command
-from watchsim.commands.common import write_run
-from watchsim.commands.common.output_place import claimed
-from watchsim.profiles_path import profiles_dir
-from watchsim.results import write_results
-from watchsim.results.read_results import read_results
+from watchsim.commands import write as write_run
+from watchsim.commands.inputs import claimed
+from watchsim.paths import profiles_dir
+from watchsim.results import folder as write_results
+from watchsim.results.folder import read_results
 from watchsim.simulation.runner import Run
-from watchsim.simulation.stops import Stop
+from watchsim.simulation.state import Stop
 
 LEVER = str(profiles_dir() / "bench_lever")
 SHORT = ["run", LEVER, "--duration", "0.05 s", "--no-plots"]
@@ -89,7 +89,7 @@ def test_a_folder_made_meanwhile_is_left_alone(
     assert [path.name for path in target.iterdir()] == ["thesis.txt"]
 
 
-@pytest.mark.parametrize("home", ["watchsim.analysis.summary.summary", "watchsim.results.write_results.write_events"])
+@pytest.mark.parametrize("home", ["watchsim.analysis.summary.summary", "watchsim.results.folder.write_events"])
 def test_a_fault_in_what_is_made_of_it_does_not_cost_the_motion(
     home: str, tmp_path: Path, elsewhere: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -226,7 +226,7 @@ def test_a_study_whose_table_cannot_be_written_is_saved_elsewhere(
     tmp_path: Path, elsewhere: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The disk fills up while the points are computed; the earlier study beside them is left as it was."""
-    from watchsim.studies import parameter_sweep
+    from watchsim.studies import sweep as parameter_sweep
 
     asked = ["sweep", LEVER, "contacts.0.friction=0.1,0.12", "--duration", "1.5 s", "--workers", "1", "--no-plots"]
     target = tmp_path / "disk" / "study"

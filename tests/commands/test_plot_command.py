@@ -8,7 +8,7 @@ import imageio.v3 as iio
 import pytest
 
 from watchsim.cli import main
-from watchsim.profiles_path import profiles_dir
+from watchsim.paths import profiles_dir
 
 
 @pytest.fixture(scope="module")

@@ -9,11 +9,10 @@ import numpy as np
 import pytest
 
 from watchsim.cli import main
-from watchsim.commands.common.console import BAD_INPUT, FINE
-from watchsim.profiles_path import profiles_dir
-from watchsim.results.read_results import read_results
-from watchsim.results.scene_copy import kept_names, travelling
-from watchsim.scene.file.load import load
+from watchsim.commands.console import BAD_INPUT, FINE
+from watchsim.paths import profiles_dir
+from watchsim.results.folder import kept_names, read_results, travelling
+from watchsim.scene.load import load
 
 
 @pytest.fixture

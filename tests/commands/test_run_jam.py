@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from watchsim.cli import main
-from watchsim.commands.common.console import GAVE_UP
+from watchsim.commands.console import GAVE_UP
 
 JAM = """
 [bodies.pusher]

@@ -9,10 +9,10 @@ import pytest
 
 import watchsim as ws
 from watchsim import jit
-from watchsim.bench.profile import run_profile
+from watchsim.bench import profile as run_profile
 from watchsim.cli import main
-from watchsim.commands.common import write_run
-from watchsim.commands.common.console import BAD_INPUT, FINE
+from watchsim.commands import write as write_run
+from watchsim.commands.console import BAD_INPUT, FINE
 
 SCENE = str(Path(__file__).resolve().parents[2] / "profiles" / "incline" / "scene.toml")
 WORDS = {"step": "steps of coupled bodies", "impact": "impacts", "lcp_to_4": "problems of 3 and 4 unknowns"}

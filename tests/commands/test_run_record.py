@@ -9,12 +9,11 @@ import numpy as np
 import pytest
 
 from watchsim.cli import main
-from watchsim.commands.common.console import BAD_INPUT, FINE
-from watchsim.commands.common.inputs import load_scene
-from watchsim.commands.common.record_size import record_size, room_for
-from watchsim.commands.common.run_pictures import last_beats
-from watchsim.profiles_path import profiles_dir
-from watchsim.results.read_results import read_results
+from watchsim.commands.console import BAD_INPUT, FINE
+from watchsim.commands.inputs import load_scene, record_size, room_for
+from watchsim.commands.pictures import last_beats
+from watchsim.paths import profiles_dir
+from watchsim.results.folder import read_results
 from watchsim.simulation.simulate import simulate
 from watchsim.storage.destination import LEAST_ROOM
 
@@ -125,7 +124,7 @@ def test_a_plot_that_fails_costs_a_line_only(capsys, tmp_path, monkeypatch) -> N
     def fail(*_: object, **__: object) -> None:
         raise RuntimeError("no ink")
 
-    monkeypatch.setattr("watchsim.render.figures.kinematics_plot.write_png", fail)
+    monkeypatch.setattr("watchsim.render.kinematics_plot.write_png", fail)
     assert main(["run", SCENE, "--duration", "0.1 s", "-o", str(tmp_path / "r")]) == FINE
     assert "kinematics.png could not be drawn: no ink" in capsys.readouterr().err
     assert (tmp_path / "r" / "trajectory.npz").is_file() and not list((tmp_path / "r" / "plots").iterdir())

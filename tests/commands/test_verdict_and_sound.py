@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from watchsim.cli import main
-from watchsim.profiles_path import profiles_dir
+from watchsim.paths import profiles_dir
 
 SWISS = str(profiles_dir() / "swiss_lever")
 

@@ -8,8 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from watchsim.cli import COMMANDS, main
-from watchsim.commands.common.command_parser import CommandParser
+from watchsim.cli import COMMANDS, CommandParser, main
 
 ANSWERS = [  # what was typed, whose usage is shown, what is said
     ("run --foo", "run", "there is no option --foo."),

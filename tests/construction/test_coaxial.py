@@ -8,13 +8,9 @@ from pathlib import Path
 import pytest
 
 import watchsim as ws
-from watchsim.construction.coaxial.coaxial_conflicts import guard_freedom
-from watchsim.construction.coaxial.coaxial_dimensions import Coaxial
-from watchsim.construction.coaxial.coaxial_points import Points
-from watchsim.construction.coaxial.coaxial_sheets import sheets
-from watchsim.construction.coaxial.coaxial_stones import locking_stone, roller_stone
-from watchsim.construction.known import design
-from watchsim.simulation.record.trajectory import EventKind
+from watchsim.construction.coaxial import Coaxial, Points, guard_freedom, locking_stone, roller_stone, sheets
+from watchsim.construction.registry import design
+from watchsim.simulation.state import EventKind
 
 ROOT = Path(__file__).resolve().parents[2]
 COAXIAL = design("coaxial")

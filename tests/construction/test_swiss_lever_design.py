@@ -16,13 +16,10 @@ from scipy.optimize import brentq
 from shapely import Polygon
 from shapely.affinity import rotate, translate
 
-from watchsim.construction.known import design
-from watchsim.construction.outline_check import drawing_of
-from watchsim.construction.swiss_lever.swiss_lever_derived import swiss
-from watchsim.construction.swiss_lever.swiss_lever_guard import crescent_needed
-from watchsim.construction.swiss_lever.swiss_lever_points import Swiss
-from watchsim.construction.swiss_lever.swiss_lever_recoil import drop_after_recoil
-from watchsim.construction.swiss_lever.swiss_lever_sheets import sheets
+from watchsim.construction.design import drawing_of
+from watchsim.construction.registry import design
+from watchsim.construction.swiss_lever import sheets, swiss
+from watchsim.construction.swiss_lever_outlines import Swiss, crescent_needed, drop_after_recoil
 from watchsim.designs import Drawn
 from watchsim.mechanism.overlap import overlap_faults
 

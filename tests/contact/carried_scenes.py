@@ -8,11 +8,10 @@ from collections.abc import Callable
 
 import numpy as np
 
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.mechanism.compile import Compiled, compile_scene
-from watchsim.scene.body import Body
-from watchsim.scene.force import Contact, Side
-from watchsim.scene.scene import Scene
+from watchsim.scene.forces import Contact, Side
+from watchsim.scene.scene import Body, Scene
 
 CARRIERS = ("pivot", "slide", "free")
 # Who the pivoted body "a" on the carriage meets: "b" beside it on the carriage, the carriage itself, a part fixed on it, bodies

@@ -10,16 +10,14 @@ import math
 
 import numpy as np
 
-from watchsim.contact.kinematics import closed_contacts, contact_kinematics
-from watchsim.contact.poses import place, poses
-from watchsim.geometry.loop import Loop
+from watchsim.contact.gaps import closed_contacts, contact_kinematics, place, poses
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Edge, Line, Point
 from watchsim.jit import callable_kernel
 from watchsim.mechanism.compile import Compiled, compile_scene
-from watchsim.model.records import ARC, CORNER, LINE
-from watchsim.scene.body import Body
-from watchsim.scene.force import Contact, Side
-from watchsim.scene.scene import Scene
+from watchsim.model import ARC, CORNER, LINE
+from watchsim.scene.forces import Contact, Side
+from watchsim.scene.scene import Body, Scene
 
 MOTIONS = ("pivot", "slide", "free", "fixed")
 DEGREES = {"pivot": 1, "slide": 1, "free": 3, "fixed": 0}

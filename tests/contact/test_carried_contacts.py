@@ -15,15 +15,14 @@ from hypothesis import strategies as st
 from pair_scenes import outline
 from true_contacts import touches
 
-from watchsim.candidates.cell_lookup import ALL, candidate, candidates, time_in_cell
-from watchsim.candidates.cell_table import CellFinder
-from watchsim.contact.kinematics import SLOTS, closed_contacts, contact_kinematics
-from watchsim.contact.poses import place, poses
-from watchsim.geometry.loop import Loop
+from watchsim.contact.cell_lookup import ALL, candidate, candidates, time_in_cell
+from watchsim.contact.cells import CellFinder
+from watchsim.contact.gaps import SLOTS, closed_contacts, contact_kinematics, place, poses
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Line
 from watchsim.jit import callable_kernel
 from watchsim.mechanism.compile import Compiled, compile_scene
-from watchsim.model.records import LINE
+from watchsim.model import LINE
 from watchsim.scene.scene import Scene
 
 STEP = 1e-3  # of a five-point quotient

@@ -13,7 +13,7 @@ from plain_kernels import in_python
 from watchsim.contact import edge_distance as kernels
 from watchsim.contact.edge_distance import EDGE, edge_records
 from watchsim.geometry.primitives import TURN, Arc, Edge, Line, moved
-from watchsim.model.records import records
+from watchsim.model import records
 
 _to_edge, _from_point, _on, _over, _place, _nearest, _profile = (
     in_python(getattr(kernels, name))

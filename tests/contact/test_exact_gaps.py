@@ -13,9 +13,9 @@ from naive.exact_distance import Pair, exact_distance, exact_gap, mp, nasty_pair
 from pair_scenes import outline
 
 import watchsim
-from watchsim.contact.distance import distance, gap, kinematics
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Edge, Line
+from watchsim.mechanism.distance import distance, gap, kinematics
 
 # Do distances and gaps agree with fifty-digit arithmetic, and rates with its difference quotients?
 

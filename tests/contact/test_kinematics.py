@@ -14,17 +14,14 @@ from naive.distance_oracle import chords, nearest
 from pair_scenes import DEGREES, KINDS, MOTIONS, Kin, body_pose, contacts_of_kind, kind_of, pose_at, two_bodies
 from plain_kernels import in_python
 
-from watchsim.contact.gaps import normal_gap
-from watchsim.contact.kinematics import closed_contacts, contact_kinematics
-from watchsim.contact.poses import place, poses
-from watchsim.geometry.loop import Loop
+from watchsim.contact.gaps import closed_contacts, contact_kinematics, normal_gap, place, poses
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import TURN, Arc, Edge, Line
 from watchsim.jit import callable_kernel
 from watchsim.mechanism.compile import Compiled, compile_scene
-from watchsim.model.records import ARC, CORNER, LINE
-from watchsim.scene.body import Body
-from watchsim.scene.force import Contact, Side
-from watchsim.scene.scene import Scene
+from watchsim.model import ARC, CORNER, LINE
+from watchsim.scene.forces import Contact, Side
+from watchsim.scene.scene import Body, Scene
 from watchsim.tolerances import SPIN_ROUNDING
 
 # Are gaps, rates, force directions and bar terms what difference quotients and brute-force distances say?

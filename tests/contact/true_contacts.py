@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from pair_scenes import body_pose
 
 from watchsim.mechanism.compile import Compiled
-from watchsim.model.records import FULL, LINE
+from watchsim.model import FULL, LINE
 from watchsim.scene.scene import Scene
 
 Array = NDArray[np.float64]

@@ -8,9 +8,9 @@ import pytest
 
 import watchsim as ws
 from watchsim import designs
-from watchsim.results.scene_copy import travelling
+from watchsim.results.folder import travelling
 from watchsim.scene.errors import SceneError
-from watchsim.scene.file.load import load
+from watchsim.scene.load import load
 
 DESIGN = '[design]\nof = "swiss_lever"\nlock = "2°"\n'
 

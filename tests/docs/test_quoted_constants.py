@@ -13,21 +13,24 @@ from pathlib import Path
 import pytest
 
 from watchsim import tolerances
-from watchsim.analysis.verdicts import settling
-from watchsim.candidates import cell_grid
-from watchsim.drawing import facets, read
-from watchsim.drawing.chaining import chain
-from watchsim.drawing.curves import plane_projection
-from watchsim.drawing.svg import svg_file, xml_elements
-from watchsim.dynamics import solver_fallbacks
+from watchsim.analysis import verdict as settling
+from watchsim.contact import cells as cell_grid
+from watchsim.drawing import chaining as chain
+from watchsim.drawing import circles as facets
+from watchsim.drawing import projection as plane_projection
+from watchsim.drawing import read
+from watchsim.drawing import svg as svg_file
+from watchsim.drawing import svg_elements as xml_elements
+from watchsim.dynamics import friction as solver_fallbacks
 from watchsim.mechanism import overlap
-from watchsim.scene import carriers
-from watchsim.scene.file import read_scene
-from watchsim.scene.file.readers import read_settings
-from watchsim.simulation import advance
-from watchsim.simulation.moreau import prox_relaxation
-from watchsim.simulation.motion import root_bracket
-from watchsim.simulation.record import overlap_watch, watched_instants
+from watchsim.scene import load as read_scene
+from watchsim.scene import read_settings
+from watchsim.scene import trains as carriers
+from watchsim.simulation import event_loop as advance
+from watchsim.simulation import free_motion as root_bracket
+from watchsim.simulation import moreau_percussions as prox_relaxation
+from watchsim.simulation import overlap_sieve as watched_instants
+from watchsim.simulation import overlap_watch
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 WORDS = {

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from hypothesis import strategies as st
 
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import TURN, Arc, Edge, Line, Point
 
 SWEEPS = (0.0, 0.0, 0.004, 0.3, -0.3, 1.5, math.pi)

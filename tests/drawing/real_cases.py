@@ -16,12 +16,11 @@ from itertools import product
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from watchsim.drawing.content import Stroke
 from watchsim.drawing.drawing import Drawing
+from watchsim.drawing.findings import Stroke
 from watchsim.drawing.inspection import inspect_report
 from watchsim.drawing.read import read, read_content
-from watchsim.geometry.extent import extents
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop, extents
 from watchsim.geometry.primitives import Edge
 
 sys.path[:0] = [str(Path(__file__).resolve().parents[1]), str(Path(__file__).resolve().parents[1] / "naive")]

@@ -6,10 +6,9 @@ import math
 
 import pytest
 
-from watchsim.geometry.extent import extents
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop, extents
 from watchsim.geometry.primitives import Arc, Line
-from watchsim.geometry.solids.mass import section
+from watchsim.geometry.solids import section
 
 TINY = 1e-12
 

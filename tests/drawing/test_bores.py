@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from watchsim.drawing.bores import lies
-from watchsim.drawing.drawn_material import layer_roles
-from watchsim.geometry.loop import Loop
+from watchsim.drawing.circles import lies
+from watchsim.drawing.material import layer_roles
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import TURN, Arc, Line
 
 MM = 1e-3

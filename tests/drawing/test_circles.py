@@ -9,7 +9,7 @@ from itertools import pairwise
 import pytest
 
 from watchsim.drawing.circles import circle_of, circle_reports
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import TURN, Arc, Line
 
 RIGHT = Arc(1e-3, 2e-3, 5e-3, -math.pi / 2, math.pi)

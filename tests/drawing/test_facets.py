@@ -12,9 +12,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from watchsim.drawing.circles import curvatures, facets
 from watchsim.drawing.drawing import Drawing
-from watchsim.drawing.facets import curvatures, facets
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Line
 
 Reader = Callable[..., Drawing]

@@ -13,7 +13,7 @@ from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.findings import Finding
 from watchsim.drawing.inspection import finding_lines, inspect_report, inspect_text
 from watchsim.drawing.read import smallness
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import TURN, Arc
 
 Reader = Callable[..., Drawing]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from watchsim.drawing.dxf import left_out
-from watchsim.drawing.svg import unread_elements
+from watchsim.drawing import dxf as left_out
+from watchsim.drawing import svg as unread_elements
 
 WARNED = "no type of entity known here; the file may be damaged"
 

@@ -12,10 +12,9 @@ from strangers import PIN_LEVER, marks
 
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.read import read
-from watchsim.geometry.extent import extents
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop, extents
 from watchsim.geometry.primitives import Arc, Line
-from watchsim.geometry.solids.mass import mass_properties
+from watchsim.geometry.solids import mass_properties
 
 pytestmark = marks(PIN_LEVER)
 

@@ -13,7 +13,7 @@ from same_outlines import compare
 from trimesh.path import Path2D, entities
 
 import watchsim as ws
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import TURN, Arc, Line
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -122,7 +122,7 @@ def test_three_edges_in_one_point_are_refused() -> None:
 
 def test_an_arc_of_a_path_is_the_circle_through_its_points() -> None:
     """Any arc, far from the origin, either way round, also more than half a turn: against centre and radius as given."""
-    from watchsim.geometry.solids.meshes import edges_of, path2d
+    from watchsim.geometry.meshes import edges_of, path2d
 
     rng = np.random.default_rng(5)
     for _ in range(50):

@@ -16,9 +16,9 @@ from hypothesis import strategies as st
 
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.read import read
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Line
-from watchsim.geometry.solids.mass import section
+from watchsim.geometry.solids import section
 
 SAME = 1e-12
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from watchsim.verification.bare_contacts import BareContacts as Case
+from watchsim.verification.random_problems import BareContacts as Case
 
 
 def random_case(rng: np.random.Generator, m: int, n: int, **chosen: Any) -> Case:

@@ -6,9 +6,9 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from watchsim.contact.kinematics import Closed, closed_contacts
+from watchsim.contact.gaps import Closed, closed_contacts
 from watchsim.dynamics.delassus import ContactWork, contact_work
-from watchsim.model.records import CONTACT, COORDINATE, LAW, Records, records
+from watchsim.model import CONTACT, COORDINATE, LAW, Records, records
 
 SPARE = 2  # rows of contacts that nobody may read
 

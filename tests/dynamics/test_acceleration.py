@@ -10,19 +10,17 @@ import pytest
 from plain_kernels import in_python
 from sparse_contacts import Sparse
 
-from watchsim.contact.index_sets import BACKWARD, FORWARD, OPEN, STICK
-from watchsim.contact.kinematics import closed_contacts, contact_kinematics
-from watchsim.contact.poses import place, poses
-from watchsim.dynamics import acceleration, bearing_friction, delassus
+from watchsim.contact.gaps import BACKWARD, FORWARD, OPEN, STICK, closed_contacts, contact_kinematics, place, poses
+from watchsim.dynamics import acceleration, delassus
+from watchsim.dynamics import forces as bearing_friction
 from watchsim.dynamics.delassus import contact_work
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Line
 from watchsim.jit import callable_kernel
 from watchsim.mechanism.compile import Compiled, compile_scene
-from watchsim.model.records import LINE
-from watchsim.scene.body import Body
-from watchsim.scene.force import Contact, Side
-from watchsim.scene.scene import Scene
+from watchsim.model import LINE
+from watchsim.scene.forces import Contact, Side
+from watchsim.scene.scene import Body, Scene
 from watchsim.verification.contact_problems import accelerate, decide_modes, solve_mode
 
 # Does the acceleration-level problem decide roll, slip and detachment as mechanics does, singular cases included?

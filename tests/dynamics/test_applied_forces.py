@@ -11,15 +11,22 @@ import pytest
 from pair_scenes import body_pose
 from plain_kernels import in_python
 
-from watchsim.dynamics.applied_forces import damping_power, drive_power, forces, next_knot, stored_energy
-from watchsim.dynamics.line_springs import add_line_springs, line_spring_damping, line_spring_energies, line_spring_powers
+from watchsim.dynamics.forces import (
+    add_line_springs,
+    damping_power,
+    drive_power,
+    forces,
+    line_spring_damping,
+    line_spring_energies,
+    line_spring_powers,
+    next_knot,
+    stored_energy,
+)
 from watchsim.jit import callable_kernel
 from watchsim.mechanism.compile import compile_scene
-from watchsim.model.records import COORDINATE, JOINT, OVER_ANGLE, OVER_TIME, REPEATED, TABLE, records
-from watchsim.scene.body import Body
-from watchsim.scene.force import LineSpring, Torque
-from watchsim.scene.prescribed import swing
-from watchsim.scene.scene import Scene
+from watchsim.model import COORDINATE, JOINT, OVER_ANGLE, OVER_TIME, REPEATED, TABLE, records
+from watchsim.scene.forces import LineSpring, Torque
+from watchsim.scene.scene import Body, Scene, swing
 
 # Do a spring and a damper between two points push every coordinate as their length says?
 

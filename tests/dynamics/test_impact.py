@@ -11,11 +11,11 @@ from random_contacts import Case, random_case
 from reference.single_impact import single_impact
 from sparse_contacts import Sparse
 
-from watchsim.contact.index_sets import BACKWARD, FORWARD
+from watchsim.contact.gaps import BACKWARD, FORWARD
 from watchsim.dynamics import impact
-from watchsim.dynamics.problem_kinds import Level
-from watchsim.model.records import COULOMB, PG1996, SHIFTED
-from watchsim.verification.bare_contacts import BareContacts
+from watchsim.dynamics.lcp import Level
+from watchsim.model import COULOMB, PG1996, SHIFTED
+from watchsim.verification.random_problems import BareContacts
 
 # Is an impact what Poisson's and Coulomb's laws say? Closed forms for one contact; for several, the laws themselves.
 

@@ -12,12 +12,20 @@ from naive.lcp_oracle import residual, solutions
 from plain_kernels import in_python
 from random_contacts import random_case
 
-from watchsim.dynamics import coulomb, handedness
-from watchsim.dynamics.coulomb import add_element, fill_matrix, fill_rhs
+from watchsim.dynamics import friction as coulomb
+from watchsim.dynamics import friction as handedness
 from watchsim.dynamics.delassus import ContactWork, ContactWorkRef, contact_work
-from watchsim.dynamics.lcp.lemke_pivoting import LcpWorkRef
-from watchsim.dynamics.problem_kinds import Rung
-from watchsim.dynamics.solver_fallbacks import _detour, _solve_copositive, enumerate_modes, solve_contacts
+from watchsim.dynamics.friction import (
+    _detour,
+    _solve_copositive,
+    add_element,
+    enumerate_modes,
+    fill_matrix,
+    fill_rhs,
+    solve_contacts,
+)
+from watchsim.dynamics.lcp import LcpWorkRef
+from watchsim.dynamics.lcp import Solver as Rung
 from watchsim.jit import entry
 
 # Is each rung of the ladder right by itself, and together do they find a solution exactly when there is one?

@@ -10,10 +10,10 @@ import pytest
 from naive.lcp_oracle import residual, solutions
 from plain_kernels import in_python
 
-from watchsim.dynamics import small_systems
-from watchsim.dynamics.lcp import basis, lemke_pivoting
-from watchsim.dynamics.lcp.lemke_pivoting import LcpWork, enumerate_lcp, lcp_work, lemke, solve_lcp
-from watchsim.dynamics.lcp.outcome import LcpOutcome
+from watchsim.dynamics import delassus as small_systems
+from watchsim.dynamics import lcp as basis
+from watchsim.dynamics import lcp as lemke_pivoting
+from watchsim.dynamics.lcp import LcpOutcome, LcpWork, enumerate_lcp, lcp_work, lemke, solve_lcp
 
 # Does the complementarity solver find what all complementary bases, tried one by one, say there is?
 

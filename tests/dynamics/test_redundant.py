@@ -10,8 +10,9 @@ import pytest
 from plain_kernels import in_python
 from random_contacts import Case
 
-from watchsim.contact.index_sets import STICK
-from watchsim.dynamics import redundant_contacts, small_systems
+from watchsim.contact.gaps import STICK
+from watchsim.dynamics import delassus as redundant_contacts
+from watchsim.dynamics import delassus as small_systems
 from watchsim.dynamics.delassus import ContactWork, contact_work
 from watchsim.verification.contact_problems import accelerate, decide_modes, solve_mode
 

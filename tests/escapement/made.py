@@ -5,14 +5,13 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from watchsim.construction import known
-from watchsim.construction.swiss_lever.swiss_lever_derived import swiss
-from watchsim.construction.swiss_lever.swiss_lever_points import Swiss
+from watchsim.construction import registry as known
+from watchsim.construction.swiss_lever import swiss
+from watchsim.construction.swiss_lever_outlines import Swiss
 from watchsim.designs import Maker
 from watchsim.geometry.primitives import Point
-from watchsim.scene.body import Body
-from watchsim.scene.force import Side
-from watchsim.scene.scene import Scene
+from watchsim.scene.forces import Side
+from watchsim.scene.scene import Body, Scene
 
 
 def swiss_scene(**dimensions: object) -> tuple[Scene, Swiss]:

@@ -13,27 +13,22 @@ import shapely
 from escapement.made import mirrored_scene, renamed_scene, swiss_scene, turned_scene
 from every_time import few
 from shapely import affinity
-from watchsim.designs import Maker
 
 from watchsim import designs
-from watchsim.construction import known
-from watchsim.construction.coaxial.coaxial_points import Points
-from watchsim.construction.swiss_lever.swiss_lever_points import Swiss
-from watchsim.construction.swiss_lever.swiss_lever_roller import banking
-from watchsim.escapement.function_report import statics, text
-from watchsim.escapement.impulses import Impulse
+from watchsim.construction import registry as known
+from watchsim.construction.coaxial import Points
+from watchsim.construction.swiss_lever_outlines import Swiss, banking
+from watchsim.designs import Maker
+from watchsim.escapement.fork_and_pin import Quantity, Safety
+from watchsim.escapement.function_report import judgements, statics, text
+from watchsim.escapement.impulses import Impulse, Pallet
 from watchsim.escapement.measure import Function, measure
-from watchsim.escapement.pallets import Pallet
-from watchsim.escapement.quantity import Quantity
-from watchsim.escapement.rules import judgements
-from watchsim.escapement.safety import Safety
-from watchsim.geometry.polyline import polyline
+from watchsim.escapement.turn import happenings, turn
+from watchsim.geometry.loops import polyline
 from watchsim.geometry.primitives import Line
-from watchsim.profiles_path import profiles_dir
-from watchsim.scene.file.load import load
+from watchsim.paths import profiles_dir
+from watchsim.scene.load import load
 from watchsim.scene.scene import Scene
-from watchsim.turning.happenings import happenings
-from watchsim.turning.turn import turn
 
 # Is the geometry of function that of the drawing, whatever the parts are called and however they stand?
 

@@ -11,11 +11,11 @@ from escapement.made import swiss_scene
 from every_time import few
 
 from watchsim.cli import main
-from watchsim.commands.common.console import BAD_INPUT, FINE
+from watchsim.commands.console import BAD_INPUT, FINE
+from watchsim.escapement.function_report import judgements
 from watchsim.escapement.measure import measure
-from watchsim.escapement.rules import judgements
-from watchsim.profiles_path import profiles_dir
-from watchsim.scene.file.load import load
+from watchsim.paths import profiles_dir
+from watchsim.scene.load import load
 
 SWISS = profiles_dir() / "swiss_lever" / "scene.toml"
 

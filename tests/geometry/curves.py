@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.interpolate import BarycentricInterpolator, BSpline
 
-from watchsim.geometry.fitting.curve import Curve
+from watchsim.geometry.biarcs import Curve
 
 Array = np.ndarray
 Map = Callable[[Array], Array]

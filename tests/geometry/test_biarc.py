@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from watchsim.geometry.fitting.biarc import arc_from, arcs_from, biarc_joints
+from watchsim.geometry.biarcs import arc_from, arcs_from, biarc_joints
 from watchsim.geometry.primitives import Arc, Line
 
 

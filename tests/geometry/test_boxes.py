@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from watchsim.geometry.boxes import FEW, Boxes
+from watchsim.geometry.primitives import FEW, Boxes
 
 
 @pytest.mark.parametrize("count", [1, FEW, FEW + 1, 2 * FEW])

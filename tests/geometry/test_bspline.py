@@ -8,9 +8,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import BSpline
 
-from watchsim.geometry.fitting.bspline import beziers
-from watchsim.geometry.fitting.bundle import Bundle
-from watchsim.geometry.fitting.curve import Curve
+from watchsim.geometry.biarcs import Bundle, Curve, beziers
 
 
 @pytest.mark.parametrize("degree", [1, 2, 3, 5, 11, 24])

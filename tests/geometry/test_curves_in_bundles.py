@@ -10,13 +10,24 @@ import pytest
 from curves import Known, quarter_ellipse, spiral, spline
 from numpy.polynomial import chebyshev
 
-from watchsim.geometry.fitting.biarc import ArcChain
-from watchsim.geometry.fitting.bundle import LOOKS, PAUSE, Bundle
-from watchsim.geometry.fitting.curve import Curve, bernstein_sum, binomials, halves
-from watchsim.geometry.fitting.deviation import _chebyshev, _least, _range, deviations, glances
-from watchsim.geometry.fitting.fit import KINK
-from watchsim.geometry.fitting.recognise import CLOSED, MEANT, joined, parts_of, whole_circle
+from watchsim.geometry.biarcs import (
+    LOOKS,
+    PAUSE,
+    ArcChain,
+    Bundle,
+    Curve,
+    _chebyshev,
+    _least,
+    _range,
+    bernstein_sum,
+    binomials,
+    deviations,
+    glances,
+    halves,
+)
+from watchsim.geometry.fitting import KINK
 from watchsim.geometry.primitives import TURN, Arc, Line
+from watchsim.geometry.recognition import CLOSED, MEANT, joined, parts_of, whole_circle
 
 RNG = np.random.default_rng(4)
 

@@ -7,9 +7,9 @@ from dataclasses import replace
 
 import pytest
 
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import TURN, Arc
-from watchsim.geometry.solids.enclosed_area import pieces, region
+from watchsim.geometry.solids import pieces, region
 
 RADII = (5e-3, 3e-3, 1e-3)
 

@@ -8,7 +8,7 @@ from decimal import Decimal
 import mpmath
 import pytest
 
-from watchsim.geometry.exact_angle import QUARTER, cos_sin
+from watchsim.geometry.primitives import QUARTER, cos_sin
 
 CHOSEN = random.Random(1)
 ANGLES = [

@@ -7,9 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from watchsim.geometry.edge_table import table_of
-from watchsim.geometry.extent import edge_extents, extents, total_length
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop, edge_extents, extents, table_of, total_length
 from watchsim.geometry.primitives import Arc, Edge, Line
 
 SAMPLES = 4001  # odd: the middle of an arc is one of them

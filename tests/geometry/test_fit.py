@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from curves import Known, involute, least_arcs, quarter_ellipse, smooth, spiral, spline
 
-from watchsim.geometry.fitting import fit as fitting
-from watchsim.geometry.fitting.curve import Curve
-from watchsim.geometry.fitting.fit import Fit, _chord, fit_all, fit_arcs
+from watchsim.geometry import fitting as fitting
+from watchsim.geometry.biarcs import Curve
+from watchsim.geometry.fitting import Fit, _chord, fit_all, fit_arcs
 from watchsim.geometry.primitives import Arc, Line
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "naive"))
@@ -115,7 +115,7 @@ def test_very_many_curves_are_followed_with_a_few_more_arcs(monkeypatch: pytest.
     rng = np.random.default_rng(4)
     curves = [spline(3, [0] * 4 + [1] * 4, 1e-3 * rng.uniform(-1.0, 1.0, (4, 2))) for _ in range(100)]
     thorough = fit_all(curves, [1e-7] * len(curves))
-    monkeypatch.setattr("watchsim.geometry.fitting.fit.MANY", len(curves) - 1)
+    monkeypatch.setattr("watchsim.geometry.fitting.MANY_FIT", len(curves) - 1)
     brisk = fit_all(curves, [1e-7] * len(curves))
     for curve, fit in zip(curves, brisk, strict=True):
         measured = true_distance(curve, fit, float(curve.breaks[0]), float(curve.breaks[-1]))

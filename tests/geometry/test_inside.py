@@ -8,8 +8,7 @@ import math
 import numpy as np
 import pytest
 
-from watchsim.geometry.inside import Inside, winding
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Inside, Loop, winding
 from watchsim.geometry.primitives import TURN, Arc, Edge, Line
 
 STEPS = 400  # along each edge

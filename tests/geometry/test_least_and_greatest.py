@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from watchsim.geometry.fitting.deviation import _range
+from watchsim.geometry.biarcs import _range
 
 
 def test_the_range_is_that_on_the_interval() -> None:

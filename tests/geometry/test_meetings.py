@@ -10,9 +10,8 @@ import numpy as np
 import pytest
 from every_time import few
 
-from watchsim.geometry.edge_table import table_of
+from watchsim.geometry.loops import near_pairs, table_of
 from watchsim.geometry.meetings import meetings
-from watchsim.geometry.near_edges import near_pairs
 from watchsim.geometry.primitives import Arc, Edge, Line
 
 REACH = 1e-9

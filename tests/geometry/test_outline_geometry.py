@@ -9,11 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from watchsim.geometry.edge_table import table_of
-from watchsim.geometry.extent import edge_extents, extents, total_length
-from watchsim.geometry.inside import winding
-from watchsim.geometry.loop import Loop
-from watchsim.geometry.polyline import chords, points_along, polyline
+from watchsim.geometry.loops import Loop, chords, edge_extents, extents, points_along, polyline, table_of, total_length, winding
 from watchsim.geometry.primitives import TURN, Arc, Line
 
 RING = Loop((Arc(1.0, 2.0, 3.0, 0.7, TURN),))

@@ -7,11 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from watchsim.geometry.edge_table import table_of
-from watchsim.geometry.inside import Inside, winding
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Inside, Loop, near_pairs, table_of, winding
 from watchsim.geometry.meetings import meetings, within
-from watchsim.geometry.near_edges import near_pairs
 from watchsim.geometry.primitives import TURN, Arc, Edge, Line, Point, moved
 
 REACH = 1e-6

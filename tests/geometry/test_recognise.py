@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from curves import spiral, spline
 
-from watchsim.geometry.fitting.curve import Curve
-from watchsim.geometry.fitting.fit import fit_arcs
-from watchsim.geometry.fitting.recognise import Part, joined, parts_of, whole_circle
+from watchsim.geometry.biarcs import Curve
+from watchsim.geometry.fitting import fit_arcs
 from watchsim.geometry.primitives import TURN, Arc, Line
+from watchsim.geometry.recognition import Part, joined, parts_of, whole_circle
 
 
 def parts(curve: Curve, tolerance: float) -> list[Part]:

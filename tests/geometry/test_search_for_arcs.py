@@ -6,10 +6,8 @@ import numpy as np
 import pytest
 from curves import spline
 
-from watchsim.geometry.fitting.biarc import ArcChain
-from watchsim.geometry.fitting.bundle import Bundle
-from watchsim.geometry.fitting.curve import Curve
-from watchsim.geometry.fitting.fewest import BRISK, MOST, THOROUGH, Found, Search, fewest
+from watchsim.geometry.biarcs import ArcChain, Bundle, Curve
+from watchsim.geometry.fitting import BRISK, MOST, THOROUGH, Found, Search, fewest
 
 BOW = [(0, 0), (1, 3), (4, 3), (5, -1)]
 FOUND = Found(ArcChain(*[None] * 5), 1e-9)  # type: ignore[arg-type]

@@ -26,12 +26,11 @@ from hunt.pool import answers
 from hunt.views import views
 
 from watchsim.geometry.primitives import Arc, Line
-from watchsim.scene.file.load import load
-from watchsim.scene.force import Contact, Side, Spring, Torque
+from watchsim.scene.forces import Contact, Side, Spring, Torque
+from watchsim.scene.load import load
 from watchsim.scene.scene import Scene
-from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.simulate import simulate
-from watchsim.simulation.stops import Stop
+from watchsim.simulation.state import EventKind, Stop
 
 # Does the judge tell a wrong motion from one that cannot be known better?
 

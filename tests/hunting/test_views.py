@@ -15,9 +15,9 @@ from hunt.generator.material import Material, apart, start_pose
 from hunt.views import View, perturbed, views
 from hunt.write import write_scene
 
-from watchsim.scene.file.load import load
-from watchsim.simulation.event_kinds import EventKind
+from watchsim.scene.load import load
 from watchsim.simulation.simulate import simulate
+from watchsim.simulation.state import EventKind
 
 # Is a mechanism that is turned, mirrored and drawn otherwise the same one?
 

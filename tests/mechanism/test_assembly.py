@@ -10,16 +10,16 @@ import pytest
 from made_scenes import circle, square
 
 from watchsim.cli import main
-from watchsim.commands.common.console import FINE
-from watchsim.drawing.dxf.write_dxf import dxf_text
-from watchsim.geometry.loop import Loop
+from watchsim.commands.console import FINE
+from watchsim.drawing.write import dxf_text
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc
-from watchsim.geometry.solids.mass import mass_properties
+from watchsim.geometry.solids import mass_properties
 from watchsim.mechanism.overlap import overlap_faults
-from watchsim.profiles_path import profiles_dir
-from watchsim.results.provenance import lock_text
+from watchsim.paths import profiles_dir
+from watchsim.results.folder import lock_text
 from watchsim.scene.errors import SceneError
-from watchsim.scene.file.load import load
+from watchsim.scene.load import load
 
 # Does one drawing serve a whole mechanism, each pivot given once?
 

@@ -15,18 +15,15 @@ from shapely.affinity import rotate, translate
 
 import watchsim as ws
 from watchsim.cli import main
-from watchsim.commands.common.console import BAD_INPUT, FINE
-from watchsim.geometry.polyline import polyline
+from watchsim.commands.console import BAD_INPUT, FINE
+from watchsim.geometry.loops import polyline
+from watchsim.mechanism.check import check_report, check_text, modelled_pairs, notes
 from watchsim.mechanism.compile import compile_scene
-from watchsim.mechanism.count_pairs import modelled_pairs
-from watchsim.mechanism.notes import notes
-from watchsim.mechanism.pair_table import PairCount
-from watchsim.mechanism.scene_in_words import force_lines, length, place, turned
-from watchsim.mechanism.static_check import check_report, check_text
-from watchsim.scene.body import Body
-from watchsim.scene.file.load import load
-from watchsim.scene.force import Contact, Side, Spring, Torque
-from watchsim.scene.scene import Scene
+from watchsim.mechanism.contacts import PairCount
+from watchsim.mechanism.words import force_lines, length, place, turned
+from watchsim.scene.forces import Contact, Side, Spring, Torque
+from watchsim.scene.load import load
+from watchsim.scene.scene import Body, Scene
 
 # Does the check echo what the scene amounts to, in the fixed names?
 

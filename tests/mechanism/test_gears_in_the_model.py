@@ -11,12 +11,9 @@ from made_gears import read
 from watchsim.geometry.primitives import Arc, Line
 from watchsim.mechanism.backlash import FLANK, TOOTH, pitch_radius, rack_ways, with_racks
 from watchsim.mechanism.compile import compile_scene
-from watchsim.scene.body import Body
-from watchsim.scene.carriers import rides
-from watchsim.scene.force import Damping, Spring, Torque
-from watchsim.scene.gearing import Gear, Geared
-from watchsim.scene.prescribed import Prescribed
-from watchsim.scene.scene import Scene
+from watchsim.scene.forces import Damping, Spring, Torque
+from watchsim.scene.scene import Body, Gear, Geared, Prescribed, Scene
+from watchsim.scene.trains import rides
 
 # How do forces on geared bodies act on the coordinate that they share? By virtual work.
 

@@ -12,19 +12,14 @@ from reference.cam import Piece
 from simulation.cam_scenes import ECCENTRIC, cam_scene
 from simulation.moving_scenes import profile
 
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Edge, Line, moved
 from watchsim.mechanism.compile import Compiled, compile_scene, scene_size
-from watchsim.mechanism.contact_features import FLAT, features
-from watchsim.mechanism.line_springs_of import coordinates_of_lines, line_springs
-from watchsim.model.records import ARC, CORNER, LINE
-from watchsim.scene.body import Body
-from watchsim.scene.carriers import rides
-from watchsim.scene.force import Contact, Damping, LineSpring, Side, Spring, Torque
-from watchsim.scene.gear_trains import bonds
-from watchsim.scene.gearing import Geared
-from watchsim.scene.prescribed import Prescribed
-from watchsim.scene.scene import Scene
+from watchsim.mechanism.contacts import FLAT, coordinates_of_lines, features, line_springs
+from watchsim.model import ARC, CORNER, LINE
+from watchsim.scene.forces import Contact, Damping, LineSpring, Side, Spring, Torque
+from watchsim.scene.scene import Body, Geared, Prescribed, Scene
+from watchsim.scene.trains import bonds, rides
 from watchsim.tolerances import JOINT_RESOLUTION
 
 # Which coordinates have forces and joints, and with what numbers?

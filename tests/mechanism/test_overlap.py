@@ -11,15 +11,24 @@ import numpy as np
 import pytest
 import shapely
 
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Line
-from watchsim.mechanism.material_polygons import chord_points, placed, refined_points
-from watchsim.mechanism.overlap import DEVIATION, meetings, overlap_faults, overlaps
-from watchsim.mechanism.overlap_depth import COARSE, common_parts, face_depth, regions_depth
-from watchsim.scene.body import Body
-from watchsim.scene.file.load import load
-from watchsim.scene.force import Contact, Side
-from watchsim.scene.scene import Scene
+from watchsim.mechanism.overlap import (
+    COARSE,
+    DEVIATION,
+    chord_points,
+    common_parts,
+    face_depth,
+    meetings,
+    overlap_faults,
+    overlaps,
+    placed,
+    refined_points,
+    regions_depth,
+)
+from watchsim.scene.forces import Contact, Side
+from watchsim.scene.load import load
+from watchsim.scene.scene import Body, Scene
 from watchsim.tolerances import DRAWING_ROUNDING
 
 # Are bodies that stand in each other found, and bodies that only touch left alone?

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc
 
 Pose = tuple[float, float, float]  # x, y (m), angle (rad)

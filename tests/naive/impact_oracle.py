@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 from naive.lcp_oracle import solutions
 
-from watchsim.model.records import PG1996, SHIFTED, Records
+from watchsim.model import PG1996, SHIFTED, Records
 
 
 def blocks(G: np.ndarray) -> tuple[np.ndarray, ...]:

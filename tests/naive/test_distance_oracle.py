@@ -7,7 +7,7 @@ import math
 import pytest
 from naive.distance_oracle import gap, nearest
 
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Line
 
 STILL = (0.0, 0.0, 0.0)

@@ -9,11 +9,10 @@ import numpy as np
 from gear_scenes import through
 from reference.flat_cam import Curve, FlatCam, end_state, point
 
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Line
-from watchsim.scene.body import Body
-from watchsim.scene.force import Contact, Side, Spring, Torque
-from watchsim.scene.scene import Scene
+from watchsim.scene.forces import Contact, Side, Spring, Torque
+from watchsim.scene.scene import Body, Scene
 from watchsim.simulation.simulate import simulate
 
 DURATION = 0.25  # s: about a turn

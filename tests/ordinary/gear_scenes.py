@@ -9,11 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 from reference.gear_friction import Train
 
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Edge, Line
-from watchsim.scene.body import Body
-from watchsim.scene.force import Contact, Damping, Side, Torque
-from watchsim.scene.scene import Scene
+from watchsim.scene.forces import Contact, Damping, Side, Torque
+from watchsim.scene.scene import Body, Scene
 
 MODULE, PRESSURE = 0.2e-3, math.radians(20.0)
 TEETH = (8, 30)  # pinion, wheel

@@ -8,13 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from reference.kinked_bar import Bar, Motion, motion, obeys_laws
 
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Line
-from watchsim.scene.body import Body
-from watchsim.scene.force import Contact, Side, Torque
-from watchsim.scene.scene import Scene
+from watchsim.scene.forces import Contact, Side, Torque
+from watchsim.scene.scene import Body, Scene
 from watchsim.simulation.simulate import simulate
-from watchsim.simulation.stops import Stop
+from watchsim.simulation.state import Stop
 
 ANGLES = (*np.geomspace(1e-10, 0.1, 73).tolist(), *np.linspace(0.2, 0.5 * math.pi, 8).tolist())
 RESTITUTIONS = (0.0, 0.1, 0.2, 0.5, 0.8)

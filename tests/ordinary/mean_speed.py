@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.simulation.trajectory import Trajectory
 
 
 def when(run: Trajectory, column: int, angle: float) -> float:

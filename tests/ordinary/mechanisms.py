@@ -14,11 +14,10 @@ from gear_scenes import gear_scene
 from kinked_scenes import bar_for, kinked_scene
 from simulation.moving_scenes import box, circle, ground, polygon, profile, touching
 
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Line, Point
-from watchsim.scene.body import Body
-from watchsim.scene.force import Damping, Spring, Torque
-from watchsim.scene.scene import Scene
+from watchsim.scene.forces import Damping, Spring, Torque
+from watchsim.scene.scene import Body, Scene
 
 TOLERANCE = 1e-11
 G = (0.0, -9.81)

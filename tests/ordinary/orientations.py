@@ -9,11 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.geometry.primitives import Point
-from watchsim.scene.body import Body
-from watchsim.scene.scene import Scene
-from watchsim.simulation.record.trajectory import EventKind
+from watchsim.scene.scene import Body, Scene
 from watchsim.simulation.simulate import simulate
-from watchsim.simulation.stops import Stop
+from watchsim.simulation.state import EventKind, Stop
 
 Numbers = NDArray[np.float64]
 

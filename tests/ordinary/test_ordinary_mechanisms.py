@@ -20,7 +20,7 @@ from reference.gear_friction import mean_speed as exact_speed
 from reference.kinked_bar import obeys_laws
 
 from watchsim.simulation.simulate import simulate
-from watchsim.simulation.stops import Stop
+from watchsim.simulation.state import Stop
 
 # Does the motion converge with the number of arcs or chords a curve is drawn with?
 

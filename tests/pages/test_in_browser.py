@@ -18,21 +18,19 @@ from pages.browser import opened
 from pages.pace import played
 from scipy.ndimage import maximum_filter
 
-from watchsim.analysis.contact_forces import forces
-from watchsim.geometry.polyline import polyline
+from watchsim.analysis.forces import forces
+from watchsim.geometry.loops import polyline
 from watchsim.pages.report_page import page_text, report
-from watchsim.profiles_path import profiles_dir
-from watchsim.render.frame.coils import hairsprings
-from watchsim.render.frame.filled_parts import loops_of
-from watchsim.render.frame.line_spring_shapes import zigzags
-from watchsim.render.frame.pose_history import poses
-from watchsim.render.frame.stage import Stage
-from watchsim.render.movies.run_movie import frame
+from watchsim.paths import profiles_dir
+from watchsim.render.movie import frame
 from watchsim.render.palette import BLUED, BRASS, FIXED, NIGHT, RUBY, STEEL
-from watchsim.scene.file.load import load
-from watchsim.scene.force import LineSpring
-from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.render.parts import loops_of
+from watchsim.render.stage import Stage
+from watchsim.render.view import hairsprings, poses, zigzags
+from watchsim.scene.forces import LineSpring
+from watchsim.scene.load import load
 from watchsim.simulation.simulate import simulate
+from watchsim.simulation.trajectory import Trajectory
 
 pytestmark = pytest.mark.slow
 SIZE = (1280, 720)

@@ -17,14 +17,13 @@ from pages.browser import opened
 from render.fake_runs import disc_run, watch_run
 
 import watchsim as ws
-from watchsim.analysis.timing.beats import Beats, beats
+from watchsim.analysis.timing import Beats, beats
 from watchsim.scene.scene import Scene
 from watchsim.studies.axes import Axis
-from watchsim.studies.limit_cycle.cycle import Cycle
-from watchsim.studies.outputs import outputs_named
-from watchsim.studies.parameter_sweep import Sweep
-from watchsim.studies.quantities import Quantity
-from watchsim.studies.sensitivity import Derivative, Effect, Sensitivity
+from watchsim.studies.cycle import Cycle
+from watchsim.studies.point import outputs_named
+from watchsim.studies.sensitivity import Derivative, Effect, Quantity, Sensitivity
+from watchsim.studies.sweep import Sweep
 from watchsim.units import TORQUE
 
 LARGEST = 30_000

@@ -19,27 +19,22 @@ from hypothesis import strategies as st
 from render.fake_runs import disc_run, watch_run
 from scipy.interpolate import BPoly
 
+from watchsim.analysis.phases import Phase
 from watchsim.analysis.summary import summary
-from watchsim.analysis.timing.phases import Phase
 from watchsim.drawing.read import read
 from watchsim.escapement.function_report import statics
 from watchsim.escapement.measure import measure
-from watchsim.geometry.loop import Loop
-from watchsim.geometry.polyline import polyline
+from watchsim.geometry.loops import Loop, polyline
 from watchsim.geometry.primitives import Arc, Line
-from watchsim.pages.html import element, embedded, joined
-from watchsim.pages.player.canvas_outlines import path_data
-from watchsim.pages.player.motion import TooMuch, channels
-from watchsim.pages.player.stretch_shown import shown
+from watchsim.pages.html import SCRIPTS, element, embedded, joined
+from watchsim.pages.player import TooMuch, channels, path_data, shown
 from watchsim.pages.report_page import page_text, report
-from watchsim.pages.self_contained_page import SCRIPTS
-from watchsim.pages.timing_sheet.phase_tables import phase_tables
-from watchsim.pages.timing_sheet.timing_sheet import verdict
-from watchsim.profiles_path import profiles_dir
-from watchsim.render.fewest_rows import kept_rows
-from watchsim.scene.file.load import load
-from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.pages.timing_sheet import phase_tables, verdict
+from watchsim.paths import profiles_dir
+from watchsim.render.rows import kept_rows
+from watchsim.scene.load import load
 from watchsim.simulation.simulate import simulate
+from watchsim.simulation.trajectory import Trajectory
 
 NASTY = "</script><img src=x onerror=alert(1)>\"'<!-- & <svg onload=alert(2)>"
 
@@ -204,7 +199,7 @@ def test_rows_that_are_kept_tell_the_motion(lever: Trajectory) -> None:
 
 
 def test_too_much_motion_is_refused_or_cut(monkeypatch: pytest.MonkeyPatch, lever: Trajectory) -> None:
-    monkeypatch.setattr("watchsim.pages.player.motion.MOST", 4_000)
+    monkeypatch.setattr("watchsim.pages.player.MOST", 4_000)
     with pytest.raises(TooMuch, match="choose a shorter window"):
         page_text(lever, window=(0.0, 0.6))
     start, end = data_of(page_text(lever))["window"]

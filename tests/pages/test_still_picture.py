@@ -12,12 +12,12 @@ import pytest
 from render.fake_runs import watch_run
 
 import watchsim as ws
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc
-from watchsim.pages.player.canvas_outlines import drawn_parts
-from watchsim.pages.poster import poster
-from watchsim.render.frame.pose_history import poses
-from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.pages.charts import poster
+from watchsim.pages.player import drawn_parts
+from watchsim.render.view import poses
+from watchsim.simulation.trajectory import Trajectory
 
 SHARE = 1e-6  # of the picture's width
 OPENING = 0.437

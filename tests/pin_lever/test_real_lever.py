@@ -14,7 +14,8 @@ from strangers import PIN_LEVER, marks, pin_lever_scene
 
 import watchsim as ws
 from watchsim.analysis.summary import summary_text
-from watchsim.simulation.record.trajectory import EventKind, Trajectory
+from watchsim.simulation.state import EventKind
+from watchsim.simulation.trajectory import Trajectory
 
 PITCH = 2.0 * np.pi / 15
 

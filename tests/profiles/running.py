@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 import watchsim as ws
-from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.simulation.trajectory import Trajectory
 
 
 def of_profile(name: str, duration: float) -> Trajectory:

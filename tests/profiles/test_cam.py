@@ -9,7 +9,7 @@ import pytest
 
 import watchsim as ws
 from watchsim import designs
-from watchsim.simulation.event_kinds import EventKind
+from watchsim.simulation.state import EventKind
 
 R, E, END, MASS, FORCE, RATE = 5e-3, 1.5e-3, 1e-3, 2e-3, 0.2, 100.0  # SI, the design's defaults
 REACH = R + END

@@ -11,9 +11,8 @@ from numpy.typing import NDArray
 
 import watchsim as ws
 from watchsim import designs
-from watchsim.construction.cycloidal_pair.cycloidal_pair_dimensions import CycloidalPair
-from watchsim.construction.cycloidal_pair.cycloidal_pair_meshing import lead_after_centres
-from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.construction.cycloidal_pair import CycloidalPair, lead_after_centres
+from watchsim.simulation.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 

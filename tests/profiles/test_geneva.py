@@ -14,7 +14,7 @@ import pytest
 
 import watchsim as ws
 from watchsim import designs
-from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.simulation.trajectory import Trajectory
 
 TAKEN_UP = 0.15  # rad of the driver from the entry until the play is taken up
 CLEAR = 0.02  # rad of the driver before the entry and after the exit

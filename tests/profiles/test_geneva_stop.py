@@ -11,9 +11,9 @@ from shapely import affinity
 
 import watchsim as ws
 from watchsim import designs
-from watchsim.construction.geneva_stop.geneva_stop_dimensions import GenevaStop
-from watchsim.construction.known import design
-from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.construction.geneva_stop import GenevaStop
+from watchsim.construction.registry import design
+from watchsim.simulation.trajectory import Trajectory
 
 
 def wound(turns: int, hand: str) -> Trajectory:

@@ -7,9 +7,8 @@ import pytest
 
 import watchsim as ws
 from watchsim import designs
-from watchsim.construction.involute_pair.involute_pair_dimensions import InvolutePair
-from watchsim.construction.involute_pair.involute_pair_gear import departure, pair
-from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.construction.involute_pair import InvolutePair, departure, pair
+from watchsim.simulation.trajectory import Trajectory
 
 
 def error(run: Trajectory, ratio: float) -> float:

@@ -8,7 +8,7 @@ from shapely.geometry import LinearRing, Point
 
 import watchsim as ws
 from watchsim import designs
-from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.simulation.trajectory import Trajectory
 
 BEAK, LENGTH = 0.4e-3, 6e-3
 

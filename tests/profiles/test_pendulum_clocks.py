@@ -14,9 +14,9 @@ from scipy.special import ellipk
 
 import watchsim as ws
 from watchsim import designs
-from watchsim.construction.graham.graham_dimensions import Graham
-from watchsim.construction.graham.graham_points import Anchor
-from watchsim.simulation.record.trajectory import EventKind, Trajectory
+from watchsim.construction.graham import Anchor, Graham
+from watchsim.simulation.state import EventKind
+from watchsim.simulation.trajectory import Trajectory
 
 DAY = 86400.0
 

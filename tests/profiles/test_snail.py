@@ -11,7 +11,7 @@ from shapely.geometry import Polygon
 
 import watchsim as ws
 from watchsim import designs
-from watchsim.simulation.event_kinds import EventKind
+from watchsim.simulation.state import EventKind
 
 TOOTH, HOUR, FREE, REST = math.radians(2.5), 0.5, 0.125, 0.29  # rad; s: let go, at rest on a step
 INERTIA, PRELOAD = 1e-7, 40e-3 * 3e-3  # kg·m², N·m

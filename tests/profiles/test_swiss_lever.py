@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import watchsim as ws
-from watchsim.simulation.record.trajectory import EventKind, Trajectory
+from watchsim.simulation.state import EventKind
+from watchsim.simulation.trajectory import Trajectory
 
 PITCH = 2.0 * np.pi / 15
 

@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 
 import watchsim as ws
 from watchsim import designs
-from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.simulation.trajectory import Trajectory
 
 R, LENGTH, NOSE, APART = 3.0, 2.0, 0.1, 4.75  # mm, the defaults: 3 + 2 + 0.1 - 0.35
 UNDERCUT, BANK = math.radians(10.0), math.radians(2.0)

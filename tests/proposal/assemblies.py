@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from watchsim.drawing.dxf.write_dxf import dxf_text
-from watchsim.profiles_path import profiles_dir
-from watchsim.scene.carriers import start_poses
-from watchsim.scene.file.load import load
+from watchsim.drawing.write import dxf_text
+from watchsim.paths import profiles_dir
+from watchsim.scene.load import load
 from watchsim.scene.roles import keeps_time
 from watchsim.scene.scene import Scene
+from watchsim.scene.trains import start_poses
 
 NAMES = ("swiss_lever", "bench_lever", "set_a", "coaxial", "geneva", "graham", "recoil_anchor", "involute_pair", "ratchet")
 

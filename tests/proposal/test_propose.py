@@ -15,7 +15,7 @@ from strangers import DRAWINGS, PIN_LEVER, needs
 from watchsim.cli import main
 from watchsim.mechanism.overlap import overlaps
 from watchsim.proposal.propose import NothingToPropose, propose
-from watchsim.scene.file.load import load
+from watchsim.scene.load import load
 from watchsim.scene.scene import Scene
 from watchsim.simulation.simulate import simulate
 

@@ -16,13 +16,11 @@ import svg_text as s
 from records.wording import said
 
 from watchsim.drawing.drawing import Drawing
-from watchsim.drawing.dxf.write_dxf import dxf_text
 from watchsim.drawing.inspection import inspect_report, inspect_text
 from watchsim.drawing.read import read
-from watchsim.drawing.svg.write_svg import svg_text
-from watchsim.geometry.extent import extents, total_length
-from watchsim.geometry.loop import Loop
-from watchsim.geometry.solids.mass import section, section_of_loop
+from watchsim.drawing.write import dxf_text, svg_text
+from watchsim.geometry.loops import Loop, extents, total_length
+from watchsim.geometry.solids import section, section_of_loop
 
 RANDOM, DAMAGED = (0, 1, 2, 3, 6, 8, 9, 10, 11), 40  # seeds of small ones; how many
 FACETS = (12, 36, 90, 360)  # of an egg

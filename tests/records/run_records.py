@@ -11,26 +11,24 @@ from typing import Any
 import numpy as np
 from records.wording import said, shortened, without_unsure
 
-from watchsim.analysis.beat_tables import beats_csv, phases_csv
-from watchsim.analysis.contact_forces import forces
 from watchsim.analysis.energy import energy_shares
-from watchsim.analysis.sound.score import score
+from watchsim.analysis.forces import forces
+from watchsim.analysis.headlines import beats_csv, phases_csv
+from watchsim.analysis.phases import phases
+from watchsim.analysis.sound import score
 from watchsim.analysis.summary import summary, summary_text
-from watchsim.analysis.tape import tape
-from watchsim.analysis.timeline.timeline_table import timeline_text
-from watchsim.analysis.timing.beats import beats
-from watchsim.analysis.timing.phases import phases
-from watchsim.profiles_path import profiles_dir
-from watchsim.render.frame.pose_history import sampled, stretch
+from watchsim.analysis.timegrapher import tape
+from watchsim.analysis.timeline import timeline_text
+from watchsim.analysis.timing import beats
+from watchsim.paths import profiles_dir
 from watchsim.render.keyframes import keyframes
-from watchsim.render.movies.busy_stretches import busy
-from watchsim.render.movies.pace import adaptive
-from watchsim.scene.file.load import load
-from watchsim.scene.oscillation import frequency
-from watchsim.scene.roles import swings
+from watchsim.render.movie import adaptive, busy
+from watchsim.render.view import sampled, stretch
+from watchsim.scene.load import load
+from watchsim.scene.roles import frequency, swings
 from watchsim.scene.scene import Scene
-from watchsim.simulation.record.trajectory import Trajectory
 from watchsim.simulation.simulate import simulate
+from watchsim.simulation.trajectory import Trajectory
 
 PROFILES = (
     *("balance", "bench_lever", "cam", "coaxial", "cylinder", "detent", "duplex", "geneva", "geneva_stop", "governor"),

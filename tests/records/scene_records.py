@@ -16,13 +16,12 @@ from records.wording import said
 
 from watchsim.escapement.function_report import statics, text
 from watchsim.escapement.measure import measure
+from watchsim.mechanism.check import check_report, check_text, modelled_pairs
 from watchsim.mechanism.compile import compile_scene
-from watchsim.mechanism.count_pairs import modelled_pairs
-from watchsim.mechanism.static_check import check_report, check_text
-from watchsim.profiles_path import profiles_dir
-from watchsim.results.scene_copy import travelling
+from watchsim.paths import profiles_dir
+from watchsim.results.folder import travelling
 from watchsim.scene.errors import SceneError
-from watchsim.scene.file.load import load
+from watchsim.scene.load import load
 from watchsim.scene.scene import Scene
 
 PROFILES = (*RUNNING, "carriage", "ratchet", "recoil_anchor", "snail", "winding_click")

@@ -6,12 +6,12 @@ import math
 
 import numpy as np
 
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Line, Point
-from watchsim.scene.body import Body
-from watchsim.scene.scene import Scene
-from watchsim.simulation.record.trajectory import EVENT_DTYPE, EventKind, Pair, Trajectory
-from watchsim.simulation.stops import Stop
+from watchsim.scene.scene import Body, Scene
+from watchsim.simulation.recording import Pair
+from watchsim.simulation.state import EVENT_DTYPE, EventKind, Stop
+from watchsim.simulation.trajectory import Trajectory
 
 MM = 1e-3
 TURN = 2.0 * math.pi

@@ -10,22 +10,19 @@ import pytest
 from matplotlib.colors import to_rgb
 from render.fake_runs import MM, circle, disc_run, watch_run, watch_scene
 
-from watchsim.geometry.coil import Coil
-from watchsim.render.frame.coils import hairsprings
-from watchsim.render.frame.filled_parts import backdrop, parts, working
-from watchsim.render.frame.marks.extras import NOTHING
-from watchsim.render.frame.marks.readouts import goes_round, reading
-from watchsim.render.frame.pose_history import poses
-from watchsim.render.frame.stage import Stage
-from watchsim.render.movies.picture_size import FORMATS, fitting
-from watchsim.render.movies.run_movie import frame, movie
-from watchsim.render.palette import BRASS, FIXED
-from watchsim.render.picture_style import LIGHT
-from watchsim.render.placed_solids import placed_solids
-from watchsim.scene.force import Spring
+from watchsim.geometry.hairspring import Coil
+from watchsim.render.encoder import FORMATS, fitting
+from watchsim.render.keyframes import placed_solids
+from watchsim.render.marks import goes_round, reading
+from watchsim.render.movie import frame, movie
+from watchsim.render.palette import BRASS, FIXED, LIGHT
+from watchsim.render.parts import backdrop, parts, working
+from watchsim.render.stage import NOTHING, Stage
+from watchsim.render.view import hairsprings, poses
+from watchsim.scene.forces import Spring
 from watchsim.scene.layer_heights import slabs
 from watchsim.scene.scene import Scene
-from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.simulation.trajectory import Trajectory
 
 COIL = Coil(0.5 * MM, 2.6 * MM, 11.0, 0.5, 0.05 * MM)
 SIZE = (960, 540)

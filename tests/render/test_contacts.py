@@ -9,13 +9,12 @@ import pytest
 from render.fake_runs import MM, circle, disc_run
 
 from watchsim.mechanism.compile import compile_scene
-from watchsim.render.frame.marks.touching_points import ContactMarks
-from watchsim.render.frame.pose_history import poses
-from watchsim.render.movies.run_movie import frame
-from watchsim.scene.body import Body
-from watchsim.scene.force import Contact, Side
-from watchsim.scene.scene import Scene
-from watchsim.simulation.record.trajectory import EVENT_DTYPE, EventKind
+from watchsim.render.marks import ContactMarks
+from watchsim.render.movie import frame
+from watchsim.render.view import poses
+from watchsim.scene.forces import Contact, Side
+from watchsim.scene.scene import Body, Scene
+from watchsim.simulation.state import EVENT_DTYPE, EventKind
 
 
 def with_contact(run, bodies, moments):

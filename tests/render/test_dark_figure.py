@@ -9,11 +9,9 @@ from matplotlib.lines import Line2D
 from matplotlib.text import Text
 from render.fake_runs import watch_run
 
-from watchsim.render.dark_figure import contrast, dark, on_dark
-from watchsim.render.figures.figure_style import SERIES, figure, key
-from watchsim.render.figures.kinematics_plot import plot_kinematics
-from watchsim.render.palette import BRASS, INK, RUBY, STEEL
-from watchsim.render.picture_style import DARK
+from watchsim.render.kinematics_plot import plot_kinematics
+from watchsim.render.palette import BRASS, DARK, INK, RUBY, STEEL, contrast, dark, on_dark
+from watchsim.render.style import SERIES, figure, key
 
 GROUND = to_rgb(DARK.background)
 

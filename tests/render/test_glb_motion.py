@@ -14,15 +14,13 @@ from render.fake_runs import watch_run
 from scipy.spatial.transform import Rotation, Slerp
 
 from watchsim.cli import main
-from watchsim.geometry.gltf_motion import Track
-from watchsim.geometry.solids.meshes import glb
-from watchsim.profiles_path import profiles_dir
-from watchsim.render.frame.pose_history import poses
-from watchsim.render.keyframes import keyframes
-from watchsim.render.placed_solids import closed_solids, placed_solids
-from watchsim.results.write_results import write_results
-from watchsim.scene.file.load import load
+from watchsim.geometry.meshes import Track, glb
+from watchsim.paths import profiles_dir
+from watchsim.render.keyframes import closed_solids, keyframes, placed_solids
+from watchsim.render.view import poses
+from watchsim.results.folder import write_results
 from watchsim.scene.layer_heights import slabs
+from watchsim.scene.load import load
 from watchsim.simulation.simulate import simulate
 
 PROFILES = Path(str(profiles_dir()))

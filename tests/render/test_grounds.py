@@ -9,9 +9,8 @@ import pytest
 from matplotlib.colors import to_rgb
 from render.fake_runs import watch_run
 
-from watchsim.render.movies.run_movie import frame
-from watchsim.render.palette import BLUED, BRASS, FIXED, NIGHT, OTHERS, RUBY, STEEL, mixed
-from watchsim.render.picture_style import DARK, LIGHT, Style
+from watchsim.render.movie import frame
+from watchsim.render.palette import BLUED, BRASS, DARK, FIXED, LIGHT, NIGHT, OTHERS, RUBY, STEEL, Style, mixed
 
 STYLES = (LIGHT, DARK)
 READ, SEEN, PALE_SEEN = 4.5, 3.0, 1.25  # contrasts: of words and of marks as WCAG 2.2 asks for; of what is meant to recede

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from watchsim.render.fewest_rows import kept_rows
 from watchsim.render.keyframes import EVENLY, _instants
-from watchsim.render.movies.run_movie import _plan
+from watchsim.render.movie import _plan
+from watchsim.render.rows import kept_rows
 
 
 @pytest.mark.parametrize("seed", range(10))

@@ -8,7 +8,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.path import Path
 
-from watchsim.render.frame.lasting_patch import LastingPatch
+from watchsim.render.parts import LastingPatch
 
 
 @pytest.mark.parametrize(("alpha", "grey"), [(None, 230), (0.5, 128)])

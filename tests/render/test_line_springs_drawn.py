@@ -9,12 +9,11 @@ import numpy as np
 from render.fake_runs import MM, watch_run
 
 from watchsim.pages.report_page import page_text
-from watchsim.render.frame.line_spring_shapes import COILS, WIDTH, zigzags
-from watchsim.render.frame.pose_history import poses
-from watchsim.render.frame.stage import Stage
 from watchsim.render.palette import BLUED
-from watchsim.scene.force import LineSpring
-from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.render.stage import Stage
+from watchsim.render.view import COILS, WIDTH, poses, zigzags
+from watchsim.scene.forces import LineSpring
+from watchsim.simulation.trajectory import Trajectory
 
 HOOK = (30.0 * MM, 40.0 * MM)  # far from all bodies
 SPRING = LineSpring(("lever", None), ((1.0 * MM, 0.5 * MM), HOOK), stiffness=1.0, length=5.0 * MM)

@@ -8,10 +8,9 @@ import numpy as np
 import pytest
 from render.fake_runs import MM, circle, polygon, watch_scene
 
-from watchsim.render.frame.filled_parts import hatching, is_round, parts, signed_area
 from watchsim.render.palette import BLUED, BRASS, FIXED, NIGHT, OTHERS, RUBY, STEEL, finish, looks
-from watchsim.scene.body import Body
-from watchsim.scene.scene import Scene
+from watchsim.render.parts import hatching, is_round, parts, signed_area
+from watchsim.scene.scene import Body, Scene
 
 
 def shapes(*loops, motion="pivot", decoration=()):

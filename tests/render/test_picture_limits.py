@@ -12,8 +12,8 @@ import pytest
 from render.fake_runs import slide_run, watch_run
 
 from watchsim.render import keyframes as keys
-from watchsim.render.fewest_rows import kept_rows
-from watchsim.render.frame.marks.readouts import (
+from watchsim.render.keyframes import keyframes
+from watchsim.render.marks import (
     changing_speed_text,
     clock,
     decimals_for,
@@ -23,11 +23,11 @@ from watchsim.render.frame.marks.readouts import (
     speed_text,
     turn_text,
 )
-from watchsim.render.frame.pose_history import dense, poses, sampled, stretch, swept
-from watchsim.render.keyframes import keyframes
-from watchsim.render.movies.busy_stretches import busy
-from watchsim.scene.body import Body
-from watchsim.simulation.event_kinds import EventKind
+from watchsim.render.movie import busy
+from watchsim.render.rows import kept_rows
+from watchsim.render.view import dense, poses, sampled, stretch, swept
+from watchsim.scene.scene import Body
+from watchsim.simulation.state import EventKind
 
 DEGREE = math.pi / 180.0
 

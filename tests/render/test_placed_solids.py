@@ -10,12 +10,12 @@ import pytest
 import trimesh
 
 from watchsim.cli import main
-from watchsim.drawing.dxf.write_dxf import dxf_text
-from watchsim.geometry.loop import Loop
+from watchsim.drawing.write import dxf_text
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import TURN, Arc, Line
-from watchsim.render.placed_solids import placed_solids
-from watchsim.scene.file.load import load
+from watchsim.render.keyframes import placed_solids
 from watchsim.scene.layer_heights import slabs
+from watchsim.scene.load import load
 from watchsim.scene.scene import Scene
 
 SCENE = """\

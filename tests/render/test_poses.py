@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from render.fake_runs import MM, disc_run, slide_run, watch_run
 
-from watchsim.render.frame.pose_history import choose, dense, moving, placed, poses, recorded, sampled, stretch, swept
+from watchsim.render.view import choose, dense, moving, placed, poses, recorded, sampled, stretch, swept
 
 TIMES = np.array([0.0, 0.1234, 0.777, 1.9, 2.0])
 

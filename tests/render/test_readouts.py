@@ -8,17 +8,8 @@ import numpy as np
 import pytest
 from render.fake_runs import slide_run, watch_run
 
-from watchsim.render.frame.marks.readouts import (
-    changing_speed_text,
-    clock,
-    decimals_for,
-    reading,
-    scale_bar,
-    signed,
-    speed_text,
-    turn_text,
-)
-from watchsim.render.frame.pose_history import poses, sampled
+from watchsim.render.marks import changing_speed_text, clock, decimals_for, reading, scale_bar, signed, speed_text, turn_text
+from watchsim.render.view import poses, sampled
 
 
 @pytest.mark.parametrize(

@@ -13,11 +13,11 @@ from shapely.geometry import Point as Spot
 from shapely.geometry import Polygon
 
 import watchsim as ws
-from watchsim.render.frame.pose_history import poses
-from watchsim.render.frame.spring_stops import stop_pins
-from watchsim.render.frame.stage import Stage
 from watchsim.render.palette import FIXED
-from watchsim.scene.file.read_scene import from_mapping
+from watchsim.render.patches import stop_pins
+from watchsim.render.stage import Stage
+from watchsim.render.view import poses
+from watchsim.scene.load import from_mapping
 from watchsim.scene.scene import Scene
 
 ARM = [(-1.0, -0.6), (9.0, -0.3), (10.0, 0.0), (9.0, 0.4), (-1.0, 0.7)]  # mm

@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 from render.fake_runs import MM, disc_run, polygon, watch_run
 
-from watchsim.render.frame.pose_history import placed, poses
-from watchsim.render.frame.view import MARGIN, Frame, view
-from watchsim.scene.body import Body
+from watchsim.render.view import MARGIN, Frame, placed, poses, view
+from watchsim.scene.scene import Body
 
 FRAME = Frame(0.0, 50.0, 1280.0, 600.0)
 

@@ -6,11 +6,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from watchsim.results.provenance import lock_text
+from watchsim.results.folder import lock_text
 from watchsim.scene.errors import SceneError
-from watchsim.scene.file.keys.write_toml import toml_text
-from watchsim.scene.file.load import load
-from watchsim.scene.file.parsed import tomllib
+from watchsim.scene.load import load
+from watchsim.scene.values import tomllib
+from watchsim.scene.write_toml import toml_text
 
 FREE = """
 [bodies.disc]

@@ -6,12 +6,10 @@ import platform
 
 import numpy as np
 
-from watchsim.results.provenance import _start, _undrawn, lock_text, versions
-from watchsim.scene.body import Body
-from watchsim.scene.file.load import load
-from watchsim.scene.file.parsed import tomllib
-from watchsim.scene.prescribed import Prescribed
-from watchsim.scene.scene import Written
+from watchsim.results.folder import _start, _undrawn, lock_text, versions
+from watchsim.scene.load import load
+from watchsim.scene.scene import Body, Prescribed, Written
+from watchsim.scene.values import tomllib
 
 EVERYTHING = """
 [bodies.disc]

@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from watchsim.results import scene_copy as module
-from watchsim.results.scene_copy import kept_names, travelling
+from watchsim.results import folder as module
+from watchsim.results.folder import kept_names, travelling
 
 
 def kept(**drawings: bytes) -> dict[str, str]:

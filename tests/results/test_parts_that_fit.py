@@ -12,10 +12,10 @@ from analysis.made_beats import lever_run
 
 from watchsim.results import archive
 from watchsim.results.archive import _check, _check_pairs, _groups, _in_order, _within
-from watchsim.scene.force import Spring
-from watchsim.scene.gearing import Gear
-from watchsim.simulation.record.contact_names import Pairs, as_pairs
-from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.scene.forces import Spring
+from watchsim.scene.scene import Gear
+from watchsim.simulation.recording import Pairs, as_pairs
+from watchsim.simulation.trajectory import Trajectory
 from watchsim.storage.columns import blocks
 
 RUN = lever_run(4)

@@ -14,12 +14,11 @@ import pytest
 from render.fake_runs import watch_run
 
 from watchsim.results import archive
-from watchsim.results import write_results as results
+from watchsim.results import folder as results
 from watchsim.results.archive import read_trajectory, write_trajectory
-from watchsim.results.read_results import read_results
+from watchsim.results.folder import check_folder, read_results, write_results
 from watchsim.results.tables import json_text
-from watchsim.results.write_results import check_folder, write_results
-from watchsim.scene.force import Contact, Side
+from watchsim.scene.forces import Contact, Side
 
 SUMMARY = {"amplitude_deg": np.float64(270.5), "rate_s_per_d": math.nan, "impacts": np.int64(3), "stop": "DURATION"}
 
@@ -182,7 +181,7 @@ def test_what_cannot_be_read_says_why(run, tmp_path, monkeypatch):
         (tmp_path / "t.npz").write_bytes(damaged)
         with pytest.raises(ValueError, match="damaged"):
             read_trajectory(tmp_path / "t.npz", run.scene)
-    monkeypatch.setattr(archive, "FORMAT", 9)
+    monkeypatch.setattr(archive, "FORMAT_ARCHIVE", 9)
     write_trajectory(run, tmp_path / "t.npz")
     monkeypatch.undo()
     with pytest.raises(ValueError, match="has format 9; this version reads format 4"):
@@ -220,8 +219,8 @@ def test_json_is_strict():
 
 
 def test_results_of_a_scene_file_can_be_read_back(tmp_path):
-    lock = pytest.importorskip("watchsim.results.provenance")
-    load = pytest.importorskip("watchsim.scene.file.load")
+    lock = pytest.importorskip("watchsim.results.folder")
+    load = pytest.importorskip("watchsim.scene.load")
     scene_file = tmp_path / "scene.toml"
     scene_file.write_text(
         '[scene]\ntitle = "T"\nschema = 1\n[bodies.a]\ncircle = "2 mm"\ninertia = "1 mg·cm²"\n'

@@ -14,14 +14,11 @@ import pytest
 from analysis.made_beats import lever_run
 
 from watchsim.results import archive
-from watchsim.results import write_results as module
-from watchsim.results.archive import read_trajectory, whole, write_array, write_trajectory
-from watchsim.results.read_results import read_results
-from watchsim.results.scene_copy import locked_drawings
-from watchsim.results.state_file import read_state, write_state
-from watchsim.results.write_results import Packed, bare_filler, check_folder, filler, is_ours, ours_in
-from watchsim.simulation.record.saved_state import TALLIED, SavedState
-from watchsim.storage.scratch_folder import PREFIX
+from watchsim.results import folder as module
+from watchsim.results.archive import read_state, read_trajectory, whole, write_array, write_state, write_trajectory
+from watchsim.results.folder import Packed, bare_filler, check_folder, filler, is_ours, locked_drawings, ours_in, read_results
+from watchsim.simulation.saved_state import TALLIED, SavedState
+from watchsim.storage.write import PREFIX
 
 RUN = lever_run(2)
 LOCKED = "[lock.drawings]\n'drawings/wheel.dxf' = 'a'\n'drawings/lever.svg' = 'b'\n'../own.dxf' = 'c'\n"
@@ -118,7 +115,7 @@ def test_a_state_comes_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
         assert np.array_equal(kept[name], (state().tally | state().arrays)[name])
     with np.load(tmp_path / "state.npz") as file:
         assert json.loads(file["header"].tobytes())["format"] == 2
-    monkeypatch.setattr("watchsim.results.state_file.FORMAT", 9)
+    monkeypatch.setattr("watchsim.results.archive.FORMAT", 9)
     with pytest.raises(ValueError, match="written by another version of watchsim"):
         read_state(tmp_path / "state.npz")
     monkeypatch.undo()
@@ -128,7 +125,7 @@ def test_a_state_comes_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
 
 
 def test_a_folder_gives_its_state_back_where_it_has_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("watchsim.results.read_results.load", lambda path: RUN.scene)
+    monkeypatch.setattr("watchsim.results.folder.load", lambda path: RUN.scene)
     (tmp_path / "scene.lock.toml").write_text("")
     write_trajectory(RUN, tmp_path / "trajectory.npz")
     assert read_results(tmp_path).end_state is None
@@ -144,7 +141,7 @@ def test_formats_that_can_be_read(number: int, tmp_path: Path) -> None:
     with np.load(tmp_path / "t.npz") as file:
         arrays = dict(file)
     header = json.loads(arrays.pop("header").tobytes())
-    assert header["format"] == archive.FORMAT == 4
+    assert header["format"] == archive.FORMAT_ARCHIVE == 4
     del header["overlap"]
     header["format"] = number
     np.savez(tmp_path / "t.npz", header=np.frombuffer(json.dumps(header).encode(), np.uint8), **arrays)

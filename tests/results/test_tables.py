@@ -16,10 +16,9 @@ import pytest
 
 from watchsim.results import tables as module
 from watchsim.results.tables import EVENT_COLUMNS, EventLines, json_text, plain, write_events
-from watchsim.scene.body import Body
-from watchsim.scene.scene import Scene
-from watchsim.simulation.event_kinds import EVENT_DTYPE, EventKind
-from watchsim.simulation.record.trajectory import Pair
+from watchsim.scene.scene import Body, Scene
+from watchsim.simulation.recording import Pair
+from watchsim.simulation.state import EVENT_DTYPE, EventKind
 
 SCENE = Scene("Made", (Body("wheel"), Body('odd, "name"'), Body("lever")))
 PAIRS = (

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from watchsim.scene.file.load import load
+from watchsim.scene.load import load
 from watchsim.scene.scene import Scene
 
 WHEELS = """

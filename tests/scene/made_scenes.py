@@ -7,9 +7,9 @@ import pytest
 
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.findings import Finding
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Line
-from watchsim.scene.file.outlines import body_outlines
+from watchsim.scene import outlines as body_outlines
 
 GOOD = """\
 [scene]

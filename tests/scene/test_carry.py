@@ -7,15 +7,14 @@ import math
 import numpy as np
 import pytest
 
+from watchsim.mechanism.check import check_report, check_text
 from watchsim.mechanism.compile import compile_scene
-from watchsim.mechanism.static_check import check_report, check_text
-from watchsim.results.provenance import lock_text
-from watchsim.scene.body import Body
-from watchsim.scene.carriers import at_start, is_still, rides, start_poses, weigh
+from watchsim.results.folder import lock_text
 from watchsim.scene.errors import SceneError
-from watchsim.scene.file.load import load
-from watchsim.scene.force import Damping, Spring
-from watchsim.scene.scene import Scene
+from watchsim.scene.forces import Damping, Spring
+from watchsim.scene.load import load
+from watchsim.scene.scene import Body, Scene
+from watchsim.scene.trains import at_start, is_still, rides, start_poses, weigh
 
 CARRIAGE = """
 [scene]

@@ -9,9 +9,9 @@ from every_time import few
 from scipy.special import j1
 
 import watchsim as ws
-from watchsim.mechanism.notes import notes
+from watchsim.mechanism.check import notes
 from watchsim.scene.errors import SceneError
-from watchsim.studies.limit_cycle.find_cycle import steady
+from watchsim.studies.steady import steady
 
 BALANCE = """
 [scene]

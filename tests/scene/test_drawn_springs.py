@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from watchsim.geometry.coil import Coil
+from watchsim.geometry.hairspring import Coil
 from watchsim.mechanism.compile import compile_scene
-from watchsim.profiles_path import profiles_dir
+from watchsim.paths import profiles_dir
 from watchsim.scene.errors import SceneError
-from watchsim.scene.file.load import load
+from watchsim.scene.load import load
 from watchsim.scene.scene import Scene
 
 PROFILES = Path(str(profiles_dir()))

@@ -7,11 +7,11 @@ import math
 import pytest
 from scene.made_gears import wheels
 
+from watchsim.mechanism.check import check_report, check_text
 from watchsim.mechanism.compile import compile_scene
-from watchsim.mechanism.static_check import check_report, check_text
 from watchsim.scene.errors import SceneError
-from watchsim.scene.gear_trains import goes_with
-from watchsim.scene.gearing import Gear, Geared
+from watchsim.scene.scene import Gear, Geared
+from watchsim.scene.trains import goes_with
 
 THIRD = '[bodies.third]\nposition = ["20 mm", "0 mm"]\ninertia = "1 g·cm²"\n'
 

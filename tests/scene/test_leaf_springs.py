@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 import watchsim as ws
 from watchsim.scene.errors import SceneError
-from watchsim.scene.file.read_scene import from_mapping
+from watchsim.scene.load import from_mapping
 from watchsim.scene.scene import Scene
 
 LEAF = 'leaf = { modulus = "200 GPa", length = "5 mm", width = "0.5 mm", thickness = "0.08 mm", arm = "2 mm" }'

@@ -8,14 +8,13 @@ from pathlib import Path
 
 import pytest
 
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Line
-from watchsim.geometry.solids.enclosed_area import region
-from watchsim.scene.body import Body
-from watchsim.scene.file.load import load
+from watchsim.geometry.solids import region
 from watchsim.scene.layer_heights import Slab, slabs
-from watchsim.scene.scene import Scene
-from watchsim.scene.solid import PLATE, UPRIGHT, Solid, Weight
+from watchsim.scene.load import load
+from watchsim.scene.scene import Body, Scene
+from watchsim.scene.solids import PLATE, UPRIGHT, Solid, Weight
 
 ROOT = Path(__file__).resolve().parents[2]
 HEAD = '[bodies.wheel]\ncircle = "3 mm"\ninertia = "1 mg·cm²"\n'

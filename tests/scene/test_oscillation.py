@@ -9,11 +9,10 @@ import pytest
 from scipy.optimize import brentq
 
 from watchsim.cli import main
-from watchsim.commands.common.console import FINE
+from watchsim.commands.console import FINE
 from watchsim.scene.errors import SceneError
-from watchsim.scene.file.load import load
-from watchsim.scene.oscillation import frequency, nominal_frequency, oscillators
-from watchsim.scene.roles import keeps_time, roles
+from watchsim.scene.load import load
+from watchsim.scene.roles import frequency, keeps_time, nominal_frequency, oscillators, roles
 
 G = 9.81
 HEAD = f'[scene]\nschema = 1\ngravity = ["0 m/s²", "-{G} m/s²"]\n'

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import PPoly
 
-from watchsim.scene.prescribed import path, swing
+from watchsim.scene.scene import path, swing
 
 PATHS = [
     ((0.0, 0.3), (2.0, -1.0)),

@@ -10,7 +10,7 @@ import tomllib
 
 import watchsim as ws
 from watchsim.scene.errors import SceneError
-from watchsim.scene.file.read_scene import from_mapping
+from watchsim.scene.load import from_mapping
 from watchsim.scene.scene import Scene
 
 TABLE = 'over = "time"\ntable = [["0.02 s", "0 mN·m"], ["0.03 s", "1 mN·m"], ["0.05 s", "1 mN·m"], ["0.06 s", "0 mN·m"]]'

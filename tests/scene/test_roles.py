@@ -6,10 +6,9 @@ from itertools import permutations
 
 import pytest
 
-from watchsim.scene.body import Body
-from watchsim.scene.force import Contact, Side, Spring, Torque
+from watchsim.scene.forces import Contact, Side, Spring, Torque
 from watchsim.scene.roles import Roles, is_driven, roles, with_anchor
-from watchsim.scene.scene import Scene
+from watchsim.scene.scene import Body, Scene
 
 BODIES = tuple(Body(name, "pivot", inertia=1.0) for name in ("third", "wheel", "fork", "balance"))
 TOUCHES = tuple(Contact((Side(a), Side(b))) for a, b in (("wheel", "fork"), ("fork", "balance"), ("third", "wheel")))

@@ -11,9 +11,9 @@ from strangers import PIN_LEVER, needs, pin_lever_scene
 from strangers import SCENES as SCENES_BESIDE
 
 from watchsim.mechanism.overlap import overlaps
-from watchsim.results.provenance import lock_text
+from watchsim.results.folder import lock_text
 from watchsim.scene.errors import SceneError
-from watchsim.scene.file.load import load
+from watchsim.scene.load import load
 
 ROOT = Path(__file__).resolve().parents[2]
 BENCH = SCENES_BESIDE / "bench_lever.json"

@@ -6,7 +6,7 @@ import pytest
 
 from watchsim.geometry.primitives import Arc
 from watchsim.scene.errors import SceneError
-from watchsim.scene.file.load import load
+from watchsim.scene.load import load
 
 ROLLER = """<svg xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"
  {page} viewBox="0 0 10 10">

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Line
-from watchsim.scene.body import Body
 from watchsim.scene.layer_heights import slabs
-from watchsim.scene.scene import Scene
-from watchsim.scene.solid import LYING, PLATE, UPRIGHT, Solid, Weight
+from watchsim.scene.scene import Body, Scene
+from watchsim.scene.solids import LYING, PLATE, UPRIGHT, Solid, Weight
 
 
 def rectangle(x0: float, y0: float, x1: float, y1: float, layer: str) -> Loop:

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import watchsim as ws
-from watchsim.mechanism.scene_in_words import force_lines
+from watchsim.mechanism.words import force_lines
 from watchsim.scene.errors import SceneError
-from watchsim.studies.limit_cycle.find_cycle import steady
+from watchsim.studies.steady import steady
 
 WHEEL = """
 [scene]

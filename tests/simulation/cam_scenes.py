@@ -7,11 +7,10 @@ from collections.abc import Sequence
 
 from reference.cam import Drive, Piece, start
 
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc
-from watchsim.scene.body import Body
-from watchsim.scene.force import Contact, Side, Spring, Torque
-from watchsim.scene.scene import Scene
+from watchsim.scene.forces import Contact, Side, Spring, Torque
+from watchsim.scene.scene import Body, Scene
 
 DRIVE = Drive(inertia=2e-8, torque=1e-8, roller=0.4e-3, mass=1e-5, stiffness=2.0, rest=-2e-3)
 RATE = 25.0

@@ -10,10 +10,9 @@ import json
 
 from moving_scenes import box, circle, ground
 
-from watchsim.scene.body import Body
-from watchsim.scene.force import Contact, Side
-from watchsim.scene.scene import Scene
-from watchsim.simulation import advance
+from watchsim.scene.forces import Contact, Side
+from watchsim.scene.scene import Body, Scene
+from watchsim.simulation import event_loop as advance
 from watchsim.simulation.simulate import simulate
 
 FALL, FRICTION, SPEED, HEIGHT, LATE = 9.81, 0.3, 0.5, 1e-9, 0.01  # m/s², 1, m/s, m, s

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.contact.kinematics import Closed, closed_contacts
+from watchsim.contact.gaps import Closed, closed_contacts
 from watchsim.dynamics.delassus import ContactWork, contact_work
 
 Array = NDArray[np.float64]

@@ -7,13 +7,13 @@ import functools
 import math
 from pathlib import Path
 
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Edge, Line, Point
-from watchsim.scene.body import Body
-from watchsim.scene.file.load import load
-from watchsim.scene.force import Contact, Side
-from watchsim.scene.scene import Scene
-from watchsim.simulation.record.trajectory import EventKind, Trajectory
+from watchsim.scene.forces import Contact, Side
+from watchsim.scene.load import load
+from watchsim.scene.scene import Body, Scene
+from watchsim.simulation.state import EventKind
+from watchsim.simulation.trajectory import Trajectory
 
 PROFILES = Path(__file__).resolve().parents[2] / "profiles"
 

@@ -14,14 +14,12 @@ from typing import Any
 import numpy as np
 from moving_scenes import profile
 
-from watchsim.candidates import pair_cache
-from watchsim.scene.recording import EVERYTHING
-from watchsim.scene.scene import Scene
-from watchsim.simulation.event_kinds import EventKind
-from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.contact import cells as pair_cache
+from watchsim.scene.scene import EVERYTHING, Scene
 from watchsim.simulation.simulate import simulate
-from watchsim.verification.edge_cases import edge_cases
-from watchsim.verification.hard_cases import hard_cases
+from watchsim.simulation.state import EventKind
+from watchsim.simulation.trajectory import Trajectory
+from watchsim.verification.hard_cases import edge_cases, hard_cases
 from watchsim.verification.repeated_impacts import repeated_impacts
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -14,12 +14,11 @@ from typing import Any
 import numpy as np
 from moving_scenes import profile
 
-from watchsim.scene.force import Damping
-from watchsim.scene.recording import EVERYTHING
-from watchsim.scene.scene import Scene
-from watchsim.simulation.loop_state.state import COUNT_NAMES
-from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.scene.forces import Damping
+from watchsim.scene.scene import EVERYTHING, Scene
 from watchsim.simulation.simulate import simulate
+from watchsim.simulation.state import COUNT_NAMES
+from watchsim.simulation.trajectory import Trajectory
 from watchsim.verification.benchmarks import Benchmark
 from watchsim.verification.hard_cases import dry_balance, painleve_rods, pins_on_rollers, superball, wedges
 from watchsim.verification.repeated_impacts import cradle, groove, pulled_block, rocking_block

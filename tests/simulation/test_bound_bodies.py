@@ -12,11 +12,11 @@ import tomllib
 from scene.made_gears import read, wheels
 
 import watchsim as ws
-from watchsim.mechanism.static_check import check_report, check_text
+from watchsim.mechanism.check import check_report, check_text
 from watchsim.scene.errors import SceneError
-from watchsim.scene.file.read_scene import from_mapping
+from watchsim.scene.load import from_mapping
 from watchsim.scene.scene import Scene
-from watchsim.simulation.event_kinds import EventKind
+from watchsim.simulation.state import EventKind
 
 # Do springs, dampers and torques between two bodies act on both? Against closed forms and the other method.
 

@@ -15,16 +15,14 @@ from scene.made_gears import read
 from scipy.optimize import brentq, minimize_scalar
 
 import watchsim as ws
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Line
-from watchsim.scene.body import Body
 from watchsim.scene.errors import SceneError
-from watchsim.scene.force import Damping, Spring, Torque
-from watchsim.scene.scene import Scene
-from watchsim.simulation.event_kinds import EventKind
-from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.scene.forces import Damping, Spring, Torque
+from watchsim.scene.scene import Body, Scene
 from watchsim.simulation.simulate import simulate
-from watchsim.simulation.stops import Stop
+from watchsim.simulation.state import EventKind, Stop
+from watchsim.simulation.trajectory import Trajectory
 
 # Do bodies carried by others move as closed forms, conserved quantities and other algorithms say?
 

@@ -11,14 +11,13 @@ import pytest
 from every_time import few
 
 import watchsim as ws
-from watchsim.profiles_path import profiles_dir
+from watchsim.paths import profiles_dir
 from watchsim.scene.errors import SceneError
-from watchsim.scene.file.load import load
-from watchsim.scene.force import Damping
+from watchsim.scene.forces import Damping
+from watchsim.scene.load import load
 from watchsim.scene.scene import Scene
-from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.simulate import simulate
-from watchsim.simulation.stops import Stop
+from watchsim.simulation.state import EventKind, Stop
 
 # Does a driven body move exactly as prescribed, and does what it meets answer as closed forms say, with the work booked?
 

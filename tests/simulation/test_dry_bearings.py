@@ -12,17 +12,15 @@ from moving_scenes import circle, ground, profile, tip, touching
 from mpmath import mp, mpf
 from reference.dry_balance import angles
 
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc
 from watchsim.jit import callable_kernel
 from watchsim.mechanism.compile import compile_scene
-from watchsim.scene.body import Body
-from watchsim.scene.force import Contact, Damping, Side, Spring, Torque
-from watchsim.scene.scene import Scene
-from watchsim.simulation.motion.free_motion import turning_time
-from watchsim.simulation.record.trajectory import EventKind
+from watchsim.scene.forces import Contact, Damping, Side, Spring, Torque
+from watchsim.scene.scene import Body, Scene
+from watchsim.simulation.free_motion import turning_time
 from watchsim.simulation.simulate import simulate
-from watchsim.simulation.stops import Stop
+from watchsim.simulation.state import EventKind, Stop
 
 # Does dry friction in a bearing hold, break loose and take energy as Coulomb's law says, in flight and with contacts?
 

@@ -15,15 +15,14 @@ from reference import pendulum
 from reference.cam import follow, oval
 from reference.valley import Path, force, height, incline, speed
 
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Edge, Line
-from watchsim.scene.body import Body
-from watchsim.scene.file.load import load
-from watchsim.scene.force import Contact, Side, Torque
-from watchsim.scene.scene import Scene
-from watchsim.simulation.record.trajectory import EventKind, Trajectory
+from watchsim.scene.forces import Contact, Side, Torque
+from watchsim.scene.load import load
+from watchsim.scene.scene import Body, Scene
 from watchsim.simulation.simulate import simulate
-from watchsim.simulation.stops import Stop
+from watchsim.simulation.state import EventKind, Stop
+from watchsim.simulation.trajectory import Trajectory
 
 # Does a contact that slides or rolls from one primitive to the next keep going, with the force of the smooth outline?
 

@@ -16,16 +16,15 @@ from numpy.polynomial import Chebyshev, Polynomial
 from plain_kernels import in_python
 
 from watchsim.jit import callable_kernel
-from watchsim.model.named_fields import dtype_of
-from watchsim.model.records import ARC, FIXED, FREE, LINE, PIVOT, SLIDE, records
-from watchsim.scene.body import Body
-from watchsim.scene.file.load import load
-from watchsim.scene.force import Contact, Side, Torque
-from watchsim.scene.scene import Scene
-from watchsim.simulation.first_closing import gap_bounds, safe_times, time_of_impact
-from watchsim.simulation.first_closing.gap_bounds import Bounds
-from watchsim.simulation.first_closing.waiting_contacts import drop_first, put
-from watchsim.simulation.loop_state.scratch import Waiting
+from watchsim.model import ARC, FIXED, FREE, LINE, PIVOT, SLIDE, dtype_of, records
+from watchsim.scene.forces import Contact, Side, Torque
+from watchsim.scene.load import load
+from watchsim.scene.scene import Body, Scene
+from watchsim.simulation import first_closing as gap_bounds
+from watchsim.simulation import first_closing as safe_times
+from watchsim.simulation import first_closing as time_of_impact
+from watchsim.simulation.first_closing import Bounds, drop_first, put
+from watchsim.simulation.scratch import Waiting
 from watchsim.simulation.simulate import simulate
 
 # Which gaps are functions of time that a test has made up?

@@ -17,19 +17,17 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 from scipy.optimize import brentq
 
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import TURN, Arc, Line
 from watchsim.jit import callable_kernel
 from watchsim.mechanism.compile import compile_scene
-from watchsim.scene.body import Body
-from watchsim.scene.force import Contact, Damping, Side, Spring, Torque
-from watchsim.scene.scene import Scene
-from watchsim.simulation.event_kinds import EventKind
-from watchsim.simulation.motion import free_motion
-from watchsim.simulation.motion.free_motion import acceleration_bound, flow
-from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.scene.forces import Contact, Damping, Side, Spring, Torque
+from watchsim.scene.scene import Body, Scene
+from watchsim.simulation import free_motion
+from watchsim.simulation.free_motion import acceleration_bound, flow
 from watchsim.simulation.simulate import simulate
-from watchsim.simulation.stops import Stop
+from watchsim.simulation.state import EventKind, Stop
+from watchsim.simulation.trajectory import Trajectory
 
 # Is the flight of one coordinate the exact solution of its equation, and when does it turn back?
 

@@ -9,15 +9,13 @@ import numpy as np
 import pytest
 from moving_scenes import box, circle, ground, on_slope, polygon, profile, touching
 
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Line
-from watchsim.scene.body import Body
-from watchsim.scene.force import Contact, Side
-from watchsim.scene.recording import Recording
-from watchsim.scene.scene import Scene
-from watchsim.simulation.record.trajectory import EventKind, Trajectory
+from watchsim.scene.forces import Contact, Side
+from watchsim.scene.scene import Body, Recording, Scene
 from watchsim.simulation.simulate import simulate
-from watchsim.simulation.stops import Stop
+from watchsim.simulation.state import EventKind, Stop
+from watchsim.simulation.trajectory import Trajectory
 
 # What happens at the edges of contact: grazing by a nanometre, hitting a corner, elastic motion run backwards?
 

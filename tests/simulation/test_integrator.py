@@ -17,17 +17,18 @@ from plain_kernels import in_python
 from reference import pendulum
 from scipy.integrate import DOP853, solve_ivp
 
-from watchsim.contact.index_sets import BACKWARD, FORWARD, OPEN, STICK
-from watchsim.geometry.loop import Loop
+from watchsim.contact.gaps import BACKWARD, FORWARD, OPEN, STICK
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Line
-from watchsim.scene.body import Body
-from watchsim.scene.force import Damping, Torque
-from watchsim.scene.scene import Scene
-from watchsim.simulation.loop_state.scratch import COUPLED
-from watchsim.simulation.motion import dense_output, dop853, drift_projection, step_path
-from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.scene.forces import Damping, Torque
+from watchsim.scene.scene import Body, Scene
+from watchsim.simulation import coupled_motion as drift_projection
+from watchsim.simulation import dop853, step_path
+from watchsim.simulation import dop853 as dense_output
+from watchsim.simulation.scratch import COUPLED
 from watchsim.simulation.simulate import simulate
-from watchsim.simulation.stops import Stop
+from watchsim.simulation.state import Stop
+from watchsim.simulation.trajectory import Trajectory
 
 # Has the integrator the order it claims, in steps and between them, where contacts couple bodies?
 

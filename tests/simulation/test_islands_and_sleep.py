@@ -19,21 +19,20 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from watchsim.bench.growth import side_by_side
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Line
 from watchsim.jit import callable_kernel
 from watchsim.mechanism.compile import Compiled, compile_scene
-from watchsim.model.records import FIXED, FREE, PIVOT, SLIDE
-from watchsim.profiles_path import profiles_dir
-from watchsim.scene.body import Body
-from watchsim.scene.file.load import load
-from watchsim.scene.force import Contact, Damping, Side, Spring, Torque
-from watchsim.scene.scene import Scene
-from watchsim.simulation.motion import contact_islands, sleeping
-from watchsim.simulation.motion.contact_islands import island_of, label_islands, sort_by_island
-from watchsim.simulation.record.trajectory import EventKind
+from watchsim.model import FIXED, FREE, PIVOT, SLIDE
+from watchsim.paths import profiles_dir
+from watchsim.scene.forces import Contact, Damping, Side, Spring, Torque
+from watchsim.scene.load import load
+from watchsim.scene.scene import Body, Scene
+from watchsim.simulation import coupled_motion as contact_islands
+from watchsim.simulation import coupled_motion as sleeping
+from watchsim.simulation.coupled_motion import island_of, label_islands, sort_by_island
 from watchsim.simulation.simulate import simulate
-from watchsim.simulation.stops import Stop
+from watchsim.simulation.state import EventKind, Stop
 
 # Which coordinates act on each other, and which of them sleep? Against connected components of a graph, and rule by rule.
 

@@ -13,18 +13,24 @@ import pytest
 from moving_scenes import profile
 
 from watchsim.analysis.summary import summary
-from watchsim.analysis.timing.beats import beats
-from watchsim.scene.body import Body
-from watchsim.scene.force import Spring
-from watchsim.scene.recording import EVERYTHING, Recording
-from watchsim.scene.scene import Scene
+from watchsim.analysis.timing import beats
+from watchsim.scene.forces import Spring
+from watchsim.scene.scene import EVERYTHING, Body, Recording, Scene
 from watchsim.simulation import runner as running
-from watchsim.simulation.event_kinds import EVENT_DTYPE, EventKind
-from watchsim.simulation.record.half_swings import FEWEST_TURNS, first_noises, half_swings, since_two_before, unevenness
-from watchsim.simulation.record.row_selection import Kept, stretch_rows, tail_length
-from watchsim.simulation.record.tally import Tally
-from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.simulation.recording import (
+    FEWEST_TURNS,
+    Tally,
+    first_noises,
+    half_swings,
+    since_two_before,
+    stretch_rows,
+    tail_length,
+    unevenness,
+)
+from watchsim.simulation.recording import Recorder as Kept
 from watchsim.simulation.simulate import simulate
+from watchsim.simulation.state import EVENT_DTYPE, EventKind
+from watchsim.simulation.trajectory import Trajectory
 
 # Is what is kept of a run, flush by flush, what one would choose who had all of it before him?
 

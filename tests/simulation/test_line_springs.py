@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 
 import watchsim as ws
 from watchsim.scene.errors import SceneError
-from watchsim.simulation.event_kinds import EventKind
+from watchsim.simulation.state import EventKind
 
 SCENE = """
 [scene]

@@ -18,20 +18,18 @@ from reference import incline_closed_form as closed_form
 from sparse_contacts import Sparse
 from test_dry_bearings import driven, rotor
 
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Line
 from watchsim.jit import callable_kernel
-from watchsim.model.records import COULOMB, PG1996, SHIFTED
-from watchsim.scene.body import Body
-from watchsim.scene.force import Contact, Damping, Side
-from watchsim.scene.scene import Scene
-from watchsim.simulation.event_kinds import EVENT_DTYPE, EventKind
-from watchsim.simulation.moreau import mobility, percussions
-from watchsim.simulation.moreau.percussion_laws import Laws, cone, laws, residual
-from watchsim.simulation.moreau.prox_relaxation import relax
-from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.model import COULOMB, PG1996, SHIFTED
+from watchsim.scene.forces import Contact, Damping, Side
+from watchsim.scene.scene import Body, Scene
+from watchsim.simulation import moreau_percussions as mobility
+from watchsim.simulation import moreau_percussions as percussions
+from watchsim.simulation.moreau_percussions import Laws, cone, laws, relax, residual
 from watchsim.simulation.simulate import simulate
-from watchsim.simulation.stops import Stop
+from watchsim.simulation.state import EVENT_DTYPE, EventKind, Stop
+from watchsim.simulation.trajectory import Trajectory
 
 # Does Moreau's time stepping, an algorithm of its own, come to the same motion at its order?
 

@@ -13,14 +13,13 @@ import shapely
 from moving_scenes import box, circle
 from scipy.interpolate import BPoly
 
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Line
-from watchsim.mechanism.overlap_depth import corner_depth
-from watchsim.scene.force import Side
-from watchsim.simulation.record.layer_outlines import Outlines
-from watchsim.simulation.record.overlap_instants import Layers, PairOfLayers
-from watchsim.simulation.record.trajectory import place_between
-from watchsim.simulation.record.watched_instants import MOST_STEPS, STRIDE, instants_within
+from watchsim.mechanism.overlap import corner_depth
+from watchsim.scene.forces import Side
+from watchsim.simulation.overlap_sieve import MOST_STEPS, STRIDE, instants_within
+from watchsim.simulation.overlap_watch import Layers, Outlines, PairOfLayers
+from watchsim.simulation.trajectory import place_between
 
 # Does the sieve get the outlines of all layers, one of each pair shrunk, and do the polygons judge what it leaves?
 

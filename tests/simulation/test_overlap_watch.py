@@ -10,22 +10,17 @@ import pytest
 import short_runs
 from moving_scenes import box, circle, profile
 
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Line
 from watchsim.mechanism.compile import compile_scene
-from watchsim.results.read_results import read_results
-from watchsim.results.write_results import write_results
-from watchsim.scene.body import Body
-from watchsim.scene.force import Contact, Side
-from watchsim.scene.recording import WHOLE_RUN
-from watchsim.scene.scene import Scene
-from watchsim.simulation.methods import EVENT_DRIVEN, MOREAU
-from watchsim.simulation.record.overlap_instants import Layers, PairOfLayers
-from watchsim.simulation.record.overlap_watch import OverlapWatch
-from watchsim.simulation.record.watched_instants import BLOCK, EARLY, chosen_moves
+from watchsim.results.folder import read_results, write_results
+from watchsim.scene.forces import Contact, Side
+from watchsim.scene.scene import WHOLE_RUN, Body, Scene
+from watchsim.simulation.overlap_sieve import BLOCK, EARLY, chosen_moves
+from watchsim.simulation.overlap_watch import Layers, OverlapWatch, PairOfLayers
 from watchsim.simulation.runner import Run
 from watchsim.simulation.simulate import simulate
-from watchsim.simulation.stops import Stop
+from watchsim.simulation.state import EVENT_DRIVEN, MOREAU, Stop
 
 # Is material inside material found in a run whose contacts were lost, and nothing reported of sound ones?
 
@@ -58,7 +53,7 @@ def test_fixed_steps_report_what_they_overlap_and_fail_by_more() -> None:
 
 
 def test_results_without_it_can_still_be_read(tmp_path) -> None:
-    from watchsim.results.provenance import lock_text
+    from watchsim.results.folder import lock_text
 
     done = dataclasses.replace(simulate(profile("incline"), 0.1), overlap={})
     write_results(done, tmp_path / "run", {}, lock_text(done.scene, (tmp_path / "run").absolute()))

@@ -12,10 +12,10 @@ from moving_scenes import of_kind, profile
 from naive.distance_oracle import chords
 from reference import incline_closed_form as closed_form
 
-from watchsim.scene.force import Side
-from watchsim.simulation.record.trajectory import EventKind, Trajectory
+from watchsim.scene.forces import Side
 from watchsim.simulation.simulate import simulate
-from watchsim.simulation.stops import Stop
+from watchsim.simulation.state import EventKind, Stop
+from watchsim.simulation.trajectory import Trajectory
 
 # Does the disc bounce, slide and roll down its incline as the closed form says?
 

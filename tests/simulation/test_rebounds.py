@@ -12,15 +12,14 @@ import pytest
 from moving_scenes import box, circle, ground, of_kind, on_slope, polygon, touching, turned
 from plain_kernels import in_python
 
-from watchsim.scene.body import Body
-from watchsim.scene.file.load import load
-from watchsim.scene.force import Contact, Side, Spring, Torque
-from watchsim.scene.scene import Scene
-from watchsim.simulation.event_kinds import EventKind
-from watchsim.simulation.events.shrinking_play import end_endless
+from watchsim.scene.forces import Contact, Side, Spring, Torque
+from watchsim.scene.load import load
+from watchsim.scene.scene import Body, Scene
+from watchsim.simulation.impacts import stop_repeated_rebounds as end_endless
 from watchsim.simulation.options import options_for
-from watchsim.simulation.record.trajectory import Trajectory
 from watchsim.simulation.simulate import simulate
+from watchsim.simulation.state import EventKind
+from watchsim.simulation.trajectory import Trajectory
 
 # When does a contact count as one that rebounds without end? Against rows of hits whose times are known.
 

@@ -17,16 +17,12 @@ from every_time import few
 from moving_scenes import profile
 
 from watchsim.mechanism.compile import compile_scene
-from watchsim.results.state_file import read_state, write_state
-from watchsim.scene.body import Body
-from watchsim.scene.recording import Recording
-from watchsim.scene.scene import Scene
-from watchsim.simulation.event_kinds import EVENT_DTYPE
-from watchsim.simulation.record.joined_runs import joined
-from watchsim.simulation.record.saved_state import LATER, SavedState, model_digest, save_state
-from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.results.archive import read_state, write_state
+from watchsim.scene.scene import Body, Recording, Scene
+from watchsim.simulation.saved_state import LATER, SavedState, model_digest, save_state
 from watchsim.simulation.simulate import simulate
-from watchsim.simulation.stops import Stop
+from watchsim.simulation.state import EVENT_DTYPE, Stop
+from watchsim.simulation.trajectory import Trajectory, joined
 
 # Is a saved state complete? Going on from it must give the same bits as never having stopped.
 

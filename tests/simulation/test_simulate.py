@@ -19,17 +19,15 @@ from interpreter import ROOT
 from moving_scenes import box, circle, ground, mirrored, of_kind, profile, touching, turned
 
 import watchsim as ws
-from watchsim.candidates.pair_cache import forget
+from watchsim.contact.cells import forget
 from watchsim.mechanism.compile import compile_scene
-from watchsim.scene.body import Body
-from watchsim.scene.force import Spring, Torque
-from watchsim.scene.recording import Recording
-from watchsim.scene.scene import Scene
-from watchsim.simulation.energy_ledger import ledger, ledger_fails, usual_energy
-from watchsim.simulation.record.trajectory import EventKind, Trajectory
+from watchsim.scene.forces import Spring, Torque
+from watchsim.scene.scene import Body, Recording, Scene
+from watchsim.simulation.run_end import ledger, ledger_fails, usual_energy
+from watchsim.simulation.runner import Pace
 from watchsim.simulation.simulate import simulate
-from watchsim.simulation.slice_pace import Pace
-from watchsim.simulation.stops import Stop
+from watchsim.simulation.state import EventKind, Stop
+from watchsim.simulation.trajectory import Trajectory
 from watchsim.tolerances import FLIGHT_SIZES, FURTHEST_SIZES
 
 # Does `simulate` keep what was asked for, whatever happens, and give the same numbers however the scene is looked at?
@@ -233,8 +231,8 @@ def test_times_may_carry_their_units() -> None:
 
 SCRIPT = """
 from watchsim.dynamics import acceleration, impact
-from watchsim.dynamics.lcp.outcome import LcpOutcome
-from watchsim.dynamics.problem_kinds import Rung
+from watchsim.dynamics.lcp import LcpOutcome
+from watchsim.dynamics.lcp import Rung
 
 def unsolvable(work, m, elements):
     work.posed.lemke = LcpOutcome.RAY

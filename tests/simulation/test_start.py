@@ -13,19 +13,18 @@ import pytest
 from moving_scenes import box, circle, profile
 
 from watchsim.cli import main
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Line
 from watchsim.mechanism.overlap import overlaps
-from watchsim.model.records import Model
-from watchsim.scene.body import Body
+from watchsim.model import Model
 from watchsim.scene.errors import SceneError
-from watchsim.scene.file.load import load
-from watchsim.scene.force import Contact, Side, Torque
-from watchsim.scene.scene import Scene
-from watchsim.simulation import overlap_removal
-from watchsim.simulation.overlap_removal import directions, overlapping_rows, taken_back_from
+from watchsim.scene.forces import Contact, Side, Torque
+from watchsim.scene.load import load
+from watchsim.scene.scene import Body, Scene
+from watchsim.simulation import start as overlap_removal
 from watchsim.simulation.simulate import simulate
-from watchsim.simulation.stops import Stop
+from watchsim.simulation.start import directions, overlapping_rows, taken_back_from
+from watchsim.simulation.state import Stop
 from watchsim.tolerances import DRAWING_ROUNDING
 
 # Does a run begin in contact where bodies touch within rounding, and is it refused where they overlap by more?

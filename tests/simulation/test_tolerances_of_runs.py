@@ -12,16 +12,13 @@ import pytest
 from every_time import few
 from moving_scenes import profile
 
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Edge
-from watchsim.scene.body import Body
-from watchsim.scene.force import Damping
-from watchsim.scene.scene import Scene
-from watchsim.simulation.loop_state.state import NO_CONTACT, new_state
-from watchsim.simulation.methods import METHODS, MOREAU, USUAL_STEP
+from watchsim.scene.forces import Damping
+from watchsim.scene.scene import Body, Scene
 from watchsim.simulation.options import natural_step, options_for
-from watchsim.simulation.record.trajectory import EventKind
 from watchsim.simulation.simulate import simulate
+from watchsim.simulation.state import METHODS, MOREAU, NO_CONTACT, USUAL_STEP, EventKind, new_state
 
 # Which tolerances and rooms has a run? Against the numbers of the method, for a scene of any size.
 

@@ -18,16 +18,13 @@ from moving_scenes import box, circle, ground, of_kind, polygon, tip, touching
 from scipy.optimize import minimize_scalar
 
 from watchsim import jit
-from watchsim.geometry.loop import Loop
-from watchsim.geometry.polyline import polyline
+from watchsim.geometry.loops import Loop, polyline
 from watchsim.geometry.primitives import Arc, Line
-from watchsim.scene.body import Body
-from watchsim.scene.file.load import load
-from watchsim.scene.force import Contact, Damping, Side, Spring
-from watchsim.scene.scene import Scene
-from watchsim.simulation.event_kinds import EventKind
+from watchsim.scene.forces import Contact, Damping, Side, Spring
+from watchsim.scene.load import load
+from watchsim.scene.scene import Body, Scene
 from watchsim.simulation.simulate import simulate
-from watchsim.simulation.stops import Stop
+from watchsim.simulation.state import EventKind, Stop
 
 # Is every touch found: grazes of a nanometre, thin blades hit fast, corners hit almost exactly?
 

@@ -13,14 +13,12 @@ from moving_scenes import profile
 from pair_scenes import outline
 from scipy.interpolate import BPoly
 
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.mechanism.compile import Compiled, compile_scene
-from watchsim.scene.body import Body
-from watchsim.scene.scene import Scene
-from watchsim.simulation.record.body_frames import frames, speeds
-from watchsim.simulation.record.contact_names import Pair, pairs_of
-from watchsim.simulation.record.trajectory import EVENT_DTYPE, Trajectory, between, place_between
-from watchsim.simulation.stops import Stop
+from watchsim.scene.scene import Body, Scene
+from watchsim.simulation.recording import Pair, pairs_of
+from watchsim.simulation.state import EVENT_DTYPE, Stop
+from watchsim.simulation.trajectory import Trajectory, between, frames, place_between, speeds
 from watchsim.storage.columns import Columns, is_mapped
 
 # Is the motion between rows interpolated with the promised order, and right at both sides of an impact?

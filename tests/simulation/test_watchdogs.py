@@ -15,29 +15,26 @@ from moving_scenes import box, circle, ground, profile, touching
 from watchsim import jit
 from watchsim.jit import callable_kernel
 from watchsim.mechanism.compile import compile_scene
-from watchsim.model.named_fields import blank
-from watchsim.scene.body import Body
-from watchsim.scene.scene import Scene
-from watchsim.simulation.advance import BEARING, KINDS, TOUCHED
-from watchsim.simulation.energy_ledger import ledger_fails
-from watchsim.simulation.events.impulse_check import is_explained
-from watchsim.simulation.events.mode_recurrence import begin_instant, decide_once, forget_decisions
-from watchsim.simulation.loop_state.scratch import Ended
-from watchsim.simulation.loop_state.state import new_state
-from watchsim.simulation.motion.coupled_motion import NORMAL
-from watchsim.simulation.motion.root_bracket import MOST, is_open, narrowed, next_time, opened
+from watchsim.model import blank
+from watchsim.scene.scene import Body, Scene
+from watchsim.simulation.closed_contacts import is_explained
+from watchsim.simulation.coupled_motion import NORMAL
+from watchsim.simulation.event_loop import BEARING, KINDS, TOUCHED
+from watchsim.simulation.free_motion import MOST, is_open, narrowed, next_time, opened
+from watchsim.simulation.modes import begin_instant, decide_once, forget_decisions
 from watchsim.simulation.options import options_for
-from watchsim.simulation.record.contact_names import pairs_of
+from watchsim.simulation.recording import pairs_of
+from watchsim.simulation.run_end import ledger_fails, what_alternates
+from watchsim.simulation.scratch import Ended
 from watchsim.simulation.simulate import simulate
-from watchsim.simulation.stop_details import what_alternates
-from watchsim.simulation.stops import Stop
+from watchsim.simulation.state import Stop, new_state
 from watchsim.tolerances import LENIENCE_STEP, MOST_LENIENT
 
 ROOT = Path(jit.__file__).resolve().parents[1]
 SABOTAGE = """
 import sys
-import watchsim.simulation.accepted_step as step
-import watchsim.simulation.events.after_event as settle
+import watchsim.simulation.event_loop as step
+import watchsim.simulation.events as settle
 from moving_scenes import profile
 from watchsim.simulation.simulate import simulate
 

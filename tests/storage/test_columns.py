@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 from storage.disk_faults import Disk, watched
 
-from watchsim.storage.columns import Columns, blocks, is_mapped, let_go, mapping, one_behind_the_other
-from watchsim.storage.unpacked import unpacked
+from watchsim.storage.columns import Columns, blocks, is_mapped, let_go, mapping, one_behind_the_other, unpacked
 
 KIND = np.dtype([("t", "f8"), ("kind", "i4")])
 

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from watchsim.storage import scratch_folder as scratch
+from watchsim.storage import write as scratch
 from watchsim.storage.write import write_file, write_folder
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="forks")

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from watchsim.storage.nameless import give_name, nameless
+from watchsim.storage.destination import give_name, nameless
 
 CONTENT = bytes(range(256)) * 10_000
 

@@ -10,8 +10,7 @@ import pytest
 from every_time import few
 from storage.disk_faults import Disk, killed_at, not_yet_on_disk, watched
 
-from watchsim.storage.scratch_folder import PREFIX, make
-from watchsim.storage.write import sweep, write_file, write_folder
+from watchsim.storage.write import PREFIX, make, sweep, write_file, write_folder
 
 MOST = 200  # actions of one writing
 OLD = {"numbers.txt": "old", "only_old.txt": "old", "mine.txt": "mine", "deep/mine.txt": "mine"}
@@ -162,9 +161,7 @@ def test_files_fail_and_die_alike(tmp_path: Path) -> None:
 
 def test_the_scratch_folder_of_a_living_process_is_left_alone(tmp_path: Path) -> None:
     """Also of another one, which has the same number in another container."""
-    code = (
-        f"import sys; from pathlib import Path; from watchsim.storage.scratch_folder import make; make(Path({str(tmp_path)!r}))"
-    )
+    code = f"import sys; from pathlib import Path; from watchsim.storage.write import make; make(Path({str(tmp_path)!r}))"
     import subprocess
 
     code += "; print('made', flush=True); sys.stdin.read()"

@@ -10,13 +10,10 @@ from dead_beat_scenes import one_wheel, two_wheels, with_catch
 
 import watchsim as ws
 from watchsim.commands.steady import text
-from watchsim.studies.limit_cycle.all_cycles.survey import Survey
-from watchsim.studies.limit_cycle.find_cycle import steady
-from watchsim.studies.limit_cycle.judge import judged, run_from
-from watchsim.studies.limit_cycle.oscillator_and_wheel import parts_of
-from watchsim.studies.limit_cycle.return_map import Return
-from watchsim.studies.limit_cycle.run_from_state import Loop
-from watchsim.studies.limit_cycle.section import first_section
+from watchsim.studies.all_cycles import Survey, judged, run_from
+from watchsim.studies.return_map import Return
+from watchsim.studies.section import Loop, first_section, parts_of
+from watchsim.studies.steady import steady
 
 
 def surveyed(function, known, good=lambda a: True):

@@ -11,8 +11,8 @@ from every_time import few
 from scipy.optimize import brentq
 
 import watchsim as ws
-from watchsim.analysis.timing.averages import mean_over
-from watchsim.studies.limit_cycle.find_cycle import steady
+from watchsim.analysis.timing import mean_over
+from watchsim.studies.steady import steady
 
 TIP, DROP, LIFT, LOCK = 0.1, 1.5, 0.5, 0.4  # degrees, as drawn in dead_beat_scenes.py
 HALF_SPAN, PITCH = 45.0, 12.0

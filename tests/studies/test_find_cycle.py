@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import watchsim as ws
-from watchsim.analysis.timing.averages import mean_over
-from watchsim.simulation.record.half_swings import unevenness
-from watchsim.studies.limit_cycle.find_cycle import steady
+from watchsim.analysis.timing import mean_over
+from watchsim.simulation.recording import unevenness
+from watchsim.studies.steady import steady
 
 
 @pytest.fixture(scope="module")

@@ -17,11 +17,9 @@ import pytest
 import watchsim as ws
 from watchsim.cli import main
 from watchsim.studies.axes import axes_from_values
-from watchsim.studies.outputs import outputs_named
-from watchsim.studies.parameter_sweep import swept
-from watchsim.studies.point import Question
-from watchsim.studies.workers.executor import Here
-from watchsim.studies.workers.journal import NAME
+from watchsim.studies.point import Question, outputs_named
+from watchsim.studies.sweep import swept
+from watchsim.studies.workers import NAME, Here
 
 ROOT = Path(ws.__file__).resolve().parents[1]
 BENCH = ws.profiles_dir() / "bench_lever"
@@ -56,7 +54,7 @@ def test_two_workers_and_another_order_give_the_same(bench, table):
 
 
 WHERE = """
-from watchsim.studies.workers.processes import start_method
+from watchsim.studies.workers import start_method
 
 def place():
     import watchsim

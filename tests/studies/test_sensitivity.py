@@ -9,9 +9,8 @@ import pytest
 
 import watchsim as ws
 from watchsim.cli import main
-from watchsim.studies.outputs import outputs_named
-from watchsim.studies.quantities import fixed_nominal, quantities
-from watchsim.studies.sensitivity import effect_of, points_of
+from watchsim.studies.point import outputs_named
+from watchsim.studies.sensitivity import effect_of, fixed_nominal, points_of, quantities
 
 BENCH = ws.profiles_dir() / "bench_lever"
 

@@ -9,8 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from watchsim.studies.limit_cycle.return_map import Return
-from watchsim.studies.limit_cycle.shooting import Fixed, Lost, fixed_point
+from watchsim.studies.return_map import Fixed, Lost, Return, fixed_point
 
 
 def returning(function, good=lambda a: True):

@@ -7,10 +7,10 @@ import io
 import pytest
 
 import watchsim as ws
-from watchsim.render.figures.study_plot import plot_sweep
+from watchsim.render.study_plot import plot_sweep
 from watchsim.studies.axes import Axis
-from watchsim.studies.outputs import outputs_named
-from watchsim.studies.parameter_sweep import Sweep
+from watchsim.studies.point import outputs_named
+from watchsim.studies.sweep import Sweep
 
 TORQUE = Axis("torques.0.value", (-1e-6, -2e-6, -3e-6), "N·m", "µN·m")
 FRICTION = Axis("contacts.0.friction", tuple(0.01 * i for i in range(9)))

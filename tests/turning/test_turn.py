@@ -13,14 +13,11 @@ from every_time import few
 
 import watchsim as ws
 from watchsim.cli import main
-from watchsim.construction.coaxial.coaxial_dimensions import Coaxial
-from watchsim.construction.coaxial.coaxial_points import Points
-from watchsim.geometry.polyline import polyline
+from watchsim.construction.coaxial import Coaxial, Points
+from watchsim.escapement.turn import happenings, stretches, turn, turn_report, verdict
+from watchsim.escapement.turned_cycle import assembly
+from watchsim.geometry.loops import polyline
 from watchsim.scene.errors import SceneError
-from watchsim.turning.happenings import happenings, stretches
-from watchsim.turning.moves import assembly
-from watchsim.turning.turn import turn
-from watchsim.turning.turning_report import turn_report, verdict
 
 PROFILES = Path(__file__).resolve().parents[2] / "profiles"
 SWING = math.radians(40.0)

@@ -17,9 +17,9 @@ import pytest
 
 from watchsim.cli import main
 from watchsim.designs import Maker
-from watchsim.profiles_path import profiles_dir
-from watchsim.scene.file.load import load
-from watchsim.scene.oscillation import frequency
+from watchsim.paths import profiles_dir
+from watchsim.scene.load import load
+from watchsim.scene.roles import frequency
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"

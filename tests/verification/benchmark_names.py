@@ -6,8 +6,7 @@ import csv
 from pathlib import Path
 
 from watchsim.verification.benchmarks import Benchmark, inclines, swings
-from watchsim.verification.edge_cases import edge_cases
-from watchsim.verification.hard_cases import hard_cases
+from watchsim.verification.hard_cases import edge_cases, hard_cases
 from watchsim.verification.repeated_impacts import repeated_impacts
 
 MAKERS = (inclines, swings, hard_cases, repeated_impacts, edge_cases)

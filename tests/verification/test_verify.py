@@ -15,15 +15,23 @@ from reference.incline_closed_form import accumulation, first_impact, reference,
 from reference.single_impact import single_impact as truth
 from scipy.optimize import linprog
 
-from watchsim.profiles_path import profiles_dir
+from watchsim.paths import profiles_dir
 from watchsim.verification import random_problems as problems
-from watchsim.verification.all_checks import rows_of, verify_text
 from watchsim.verification.benchmarks import Benchmark, Check, swings
-from watchsim.verification.closed_forms import Incline, incline_state
-from watchsim.verification.closed_swings import Damped, Stopped, damped_state, stopped_state, touch_times, turning_time
-from watchsim.verification.compared import compared
+from watchsim.verification.checks import (
+    Damped,
+    Incline,
+    Stopped,
+    compared,
+    damped_state,
+    incline_state,
+    stopped_state,
+    touch_times,
+    turning_time,
+)
 from watchsim.verification.hard_cases import wedges
 from watchsim.verification.random_problems import random_rows
+from watchsim.verification.verify import rows_of, verify_text
 
 # Do all benchmarks come out, and would `verify` notice if one did not?
 

@@ -10,13 +10,27 @@ import pytest
 from benchmark_names import PUBLISHED
 from reference.single_impact import single_impact
 
-from watchsim.contact.index_sets import BACKWARD, OPEN, STICK
-from watchsim.verification.woodpecker import exact_motion
-from watchsim.verification.woodpecker.exact_motion import Phase, moments, next_event, phase_of, settle
-from watchsim.verification.woodpecker.toy import BEAK, LOWER, UPPER, Modal, Toy, modal, start
-from watchsim.verification.woodpecker.toy_stepping import step_to
-from watchsim.verification.woodpecker.woodpecker_cycle import breaks_loose, find_cycle
-from watchsim.verification.woodpecker.woodpecker_rows import STEPS, woodpecker_rows
+from watchsim.contact.gaps import BACKWARD, OPEN, STICK
+from watchsim.verification import woodpecker as exact_motion
+from watchsim.verification.woodpecker import (
+    BEAK,
+    LOWER,
+    STEPS,
+    UPPER,
+    Modal,
+    Phase,
+    Toy,
+    breaks_loose,
+    find_cycle,
+    modal,
+    moments,
+    next_event,
+    phase_of,
+    settle,
+    start,
+    step_to,
+    woodpecker_rows,
+)
 
 # Does the woodpecker toy come out?
 

@@ -5,7 +5,9 @@ One mapping for programs, with the names of summary.json; the text for people an
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import difflib
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -13,28 +15,200 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.analysis.beat_tables import beats_csv, phases_csv
-from watchsim.analysis.doubts import doubts
-from watchsim.analysis.efficiency import efficiency
-from watchsim.analysis.expectations import judged
-from watchsim.analysis.headlines import headlines
-from watchsim.analysis.timing.averages import Averages, averages, last_window
-from watchsim.analysis.timing.beats import Beats, beats
-from watchsim.analysis.timing.escape_wheel import missed_beats
-from watchsim.analysis.timing.no_timing import why_no_timing
-from watchsim.analysis.timing.standstill import standstill
-from watchsim.analysis.timing.timegrapher import timegrapher
-from watchsim.analysis.timing.whole_run import whole_run
-from watchsim.analysis.verdicts.verdict import verdict
-from watchsim.analysis.verdicts.verdict_kinds import NOTHING, Verdict
-from watchsim.mechanism.notes import notes
-from watchsim.results.provenance import versions
+from watchsim.analysis.energy import efficiency
+from watchsim.analysis.escape_wheel import missed_beats, standstill, why_no_timing
+from watchsim.analysis.headlines import beats_csv, doubts, headlines, phases_csv
+from watchsim.analysis.timegrapher import timegrapher
+from watchsim.analysis.timing import Averages, Beats, averages, beats, last_window, whole_run
+from watchsim.analysis.verdict import verdict
+from watchsim.analysis.verdict_kinds import NOTHING, Verdict
+from watchsim.mechanism.check import notes
+from watchsim.results.folder import versions
 from watchsim.results.tables import plain
+from watchsim.scene.keys import ALIKE
 from watchsim.scene.roles import keeps_time, roles, swings
-from watchsim.simulation.event_kinds import EventKind
-from watchsim.simulation.record.body_frames import frames, speeds
-from watchsim.simulation.record.trajectory import Trajectory
-from watchsim.storage.long_text import LongText
+from watchsim.scene.scene import Expectation
+from watchsim.simulation.runner import Progress
+from watchsim.simulation.simulate import simulate
+from watchsim.simulation.state import MOREAU, EventKind, Stop
+from watchsim.simulation.trajectory import Trajectory, frames, speeds
+from watchsim.storage.columns import LongText
+from watchsim.units import known_unit
+
+# How far would the numbers move in a more exact run?
+#
+# The run is done again, a hundred times more exactly (by events) or with half the step (Moreau, where the error of the first
+# run is then twice the difference, since it goes with the step). What moves is the error of the computation. That a watch has
+# not settled yet is another error; of the two the larger is given.
+
+TIGHTER, TIGHTEST = 0.01, 1e-13
+NUMBERS = ("amplitude_deg", "period_s", "rate_s_per_d", "beat_error_ms")
+
+
+def more_exact(run: Trajectory, progress: Progress | None = None, stream: Path | None = None) -> Trajectory:
+    """The same motion once more, more exactly."""
+    if run.method == MOREAU and run.step is not None:
+        step = 0.5 * run.step
+        return simulate(run.scene, run.simulated, run.tolerance, progress=progress, method=MOREAU, step=step, stream=stream)
+    return simulate(run.scene, run.simulated, max(TIGHTER * run.tolerance, TIGHTEST), progress=progress, stream=stream)
+
+
+def with_error_bars(numbers: Mapping[str, Any], other: Mapping[str, Any]) -> dict[str, Any]:
+    """The summary `numbers` with the differences to `other`, the summary of the more exact run, as errors.
+
+    Each `..._error` becomes at least the difference (where beats are too few to tell their scatter, it stays None: how exactly
+    they were computed, `differences` says), every end state gets an error beside it, and `error_bars` says what was
+    compared; its `complete` is False where the more exact run did not come to its end, and no error is given then.
+    """
+    share = 2.0 if numbers["method"] == MOREAU else 1.0
+    said = {name: other[name] for name in ("tolerance", "step_s", "stop", "wall_s")}
+    if other["stop"] != Stop.DURATION.name:
+        return {**numbers, "error_bars": {**said, "complete": False}}
+    out = dict(numbers)
+    moved = {}
+    for name in NUMBERS:
+        if numbers[name] is None or other[name] is None:
+            continue
+        moved[name] = share * abs(numbers[name] - other[name])
+        if numbers[f"{name}_error"] is not None:
+            out[f"{name}_error"] = max(moved[name], numbers[f"{name}_error"])
+    out["bodies"] = {
+        body: {**state, **{f"{name}_error": share * abs(value - other["bodies"][body][name]) for name, value in state.items()}}
+        for body, state in numbers["bodies"].items()
+    }
+    out["error_bars"] = {**said, "complete": True, "differences": moved}
+    return out
+
+
+# Did the run keep what the scene promised?
+#
+# Keys are watch quantities (amplitude, rate, period, beat_error, frequency) or dotted names of the summary, such as
+# "bodies.disc.x_m" or "energy.residual_relative". Units come from the ends of these names.
+
+WATCH_KEYS = {
+    "amplitude": "amplitude_deg",
+    "rate": "rate_s_per_d",
+    "period": "period_s",
+    "beat_error": "beat_error_ms",
+    "frequency": "frequency_hz",
+}
+# Longest first: "_s_per_d" must not pass for "_d".
+ENDINGS = {
+    **{"_rad_per_s": "rad/s", "_m_per_s": "m/s", "_s_per_d": "s/d"},
+    **{"_deg": "°", "_rad": "rad", "_vph": "vph", "_hz": "Hz", "_ms": "ms", "_s": "s", "_m": "m", "_J": "J"},
+}
+ERROR = "_error"
+KNOWN = f"Known names: {', '.join(WATCH_KEYS)} and the names in summary.json."
+MOST_ADVISED = 20  # wrong keys for which a similar one is looked for: each takes a hundredth of a second
+
+
+def judge(expectation: Expectation, numbers: Mapping[str, Any]) -> dict[str, Any]:
+    """{key, expected, tolerance, got, ok, unit, message}, in the unit of the promise; `message` says why `got` is None."""
+    return _judged(expectation, dict(_numbers(numbers)))
+
+
+def _judged(expectation: Expectation, known: Mapping[str, float | None]) -> dict[str, Any]:
+    got, message = _found(expectation, known)
+    ok = got is not None and abs(got - expectation.value) <= expectation.tolerance
+    return {
+        "key": expectation.key,
+        "expected": expectation.value,
+        "tolerance": expectation.tolerance,
+        "got": got,
+        "ok": ok,
+        "unit": expectation.unit,
+        "message": message,
+    }
+
+
+def not_judged(entry: Mapping[str, Any], changed: Sequence[str]) -> dict[str, Any]:
+    """An entry of `judge` without a verdict (`ok` is null): options made the run another than the scene's own."""
+    return {**entry, "ok": None, "message": f"not checked: changed by {' and '.join(changed)}"}
+
+
+def unit_of(name: str) -> str:
+    """The unit a dotted name of the summary ends with; "" for plain numbers."""
+    if name.startswith("energy.dissipated."):
+        return "J"
+    last = name.removesuffix(ERROR)
+    return next((unit for ending, unit in ENDINGS.items() if last.endswith(ending)), "")
+
+
+def mistake(expectation: Expectation, numbers: Mapping[str, Any]) -> str:
+    """What is wrong with the key or the unit, whatever the run; "" for nothing. What is null may hold numbers later."""
+    return _mistake(expectation, dict(_numbers(numbers)))
+
+
+def mistakes(expectations: Sequence[Expectation], numbers: Mapping[str, Any]) -> list[str]:
+    """`mistake` of each."""
+    known = dict(_numbers(numbers))
+    found: list[str] = []
+    wrong = 0
+    for expectation in expectations:
+        found.append(_mistake(expectation, known, advised=wrong < MOST_ADVISED))
+        wrong += bool(found[-1])
+    return found
+
+
+def judged(expectations: Sequence[Expectation], numbers: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """`judge` of each."""
+    known = dict(_numbers(numbers))
+    return [_judged(expectation, known) for expectation in expectations]
+
+
+def _mistake(expectation: Expectation, known: Mapping[str, float | None], advised: bool = True) -> str:
+    name = _name(expectation)
+    if name not in known and not _within_null(name, known):
+        return f'"{expectation.key}" is not a number in the results. {_advice(expectation.key, known) if advised else KNOWN}'
+    source = unit_of(name)
+    if expectation.unit and known_unit(source).powers != known_unit(expectation.unit).powers:
+        return f'"{expectation.key}" is in {source or "plain numbers"}, which cannot be compared with {expectation.unit}'
+    return ""
+
+
+def _within_null(name: str, known: Mapping[str, float | None]) -> bool:
+    """Whether something above the dotted name is null, and may hold numbers in another run."""
+    parts = name.split(".")
+    return any(known.get(".".join(parts[:k]), 0.0) is None for k in range(1, len(parts)))
+
+
+def _name(expectation: Expectation) -> str:
+    return WATCH_KEYS.get(expectation.key, expectation.key)
+
+
+def _found(expectation: Expectation, known: Mapping[str, float | None]) -> tuple[float | None, str]:
+    """The number in the expectation's unit, or None and what is wrong."""
+    if message := _mistake(expectation, known):
+        return None, message
+    value = known.get(_name(expectation))
+    if value is None:
+        return None, f'this run gives no "{expectation.key}"'
+    if not expectation.unit:
+        return value, ""
+    return value * known_unit(unit_of(_name(expectation))).factor / known_unit(expectation.unit).factor, ""
+
+
+def _numbers(mapping: Mapping[str, Any], above: str = "") -> list[tuple[str, float | None]]:
+    """(dotted name, value) of all numbers and of what is null."""
+    found: list[tuple[str, float | None]] = []
+    for key, value in mapping.items():
+        name = f"{above}{key}"
+        if isinstance(value, Mapping):
+            found += _numbers(value, f"{name}.")
+        elif value is None:
+            found.append((name, None))
+        elif isinstance(value, (int, float)):
+            found.append((name, float(value) if math.isfinite(value) else None))
+    return found
+
+
+def _advice(key: str, known: Mapping[str, Any]) -> str:
+    names = [*WATCH_KEYS, *known]
+    near = difflib.get_close_matches(key, names, n=1, cutoff=ALIKE)
+    return f'Did you mean "{near[0]}"?' if near else KNOWN
+
+
+# What are the headline numbers of a run?
 
 AVERAGED = ("amplitude_deg", "period_s", "rate_s_per_d", "beat_error_ms")
 LEDGER = {"in_J": 0.0, "dissipated": {}, "stored_J": 0.0, "residual_J": 0.0, "residual_relative": 0.0}

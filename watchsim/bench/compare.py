@@ -3,14 +3,223 @@
 from __future__ import annotations
 
 import statistics
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
-from watchsim.bench.engines.world import is_installed, version_of
-from watchsim.bench.outcomes import Outcome, cpu_seconds, outcome
-from watchsim.bench.scenarios import ENGINES, REFERENCE_TOLERANCE, Scenario
-from watchsim.simulation.methods import EVENT_DRIVEN, MOREAU
-from watchsim.verification.closed_forms import incline_state
+import numpy as np
+
+from watchsim.analysis.timing import DAY, mean_over
+from watchsim.bench.engines import MODULES, build, is_installed, version_of
+from watchsim.bench.scenarios import ENGINES, REFERENCE_TOLERANCE, Scenario, swing
+from watchsim.contact.cells import forget
+from watchsim.mechanism.compile import compile_scene
+from watchsim.scene.load import load
+from watchsim.scene.outlines import cached_drawing
+from watchsim.scene.scene import Recording
+from watchsim.simulation.runner import Run, trajectory_of
+from watchsim.simulation.simulate import MoreauRun, simulate
+from watchsim.simulation.state import EVENT_DRIVEN, MOREAU, Stop
+from watchsim.simulation.trajectory import Trajectory
+from watchsim.verification.checks import incline_state
+
+# How long does a whole run take by the clock, from the drawing to the last step, the first time and again?
+#
+# The compiled code is loaded before. The first run of a geometry reads the drawings and learns the cells that it meets (other
+# engines make their polygons); the second one finds both known.
+
+
+@dataclass(frozen=True, slots=True)
+class Whole:
+    """s by the clock: getting ready and stepping of the first run of a geometry, and of the one after it."""
+
+    scene: str
+    method: str
+    setting: float
+    simulated: float
+    first_ready: float
+    first_stepping: float
+    again_ready: float
+    again_stepping: float
+
+
+def whole(scenario: Scenario, method: str, setting: float) -> Whole:
+    """Both runs, one after the other; KeyboardInterrupt where one is interrupted."""
+    if scenario.scene.path is None:
+        raise ValueError(f"{scenario.name} has no scene file to be read")
+    _once(scenario, scenario.scene.path, method, setting, 0.01)  # compiled code and libraries are loaded
+    forget()
+    cached_drawing.cache_clear()
+    times = [_once(scenario, scenario.scene.path, method, setting, scenario.duration) for _ in range(2)]
+    return Whole(scenario.name, method, setting, scenario.duration, *times[0], *times[1])
+
+
+def _once(scenario: Scenario, path: Path, method: str, setting: float, duration: float) -> tuple[float, float]:
+    """Getting ready and stepping, s."""
+    begun = time.perf_counter()
+    scene = load(path)
+    if method in (EVENT_DRIVEN, MOREAU):
+        ready = time.perf_counter()
+        options = {"tolerance": setting} if method == EVENT_DRIVEN else {"step": setting}
+        run = simulate(scene, duration, record="statistics", method=method, **options)  # type: ignore[arg-type]
+        if run.stop == Stop.INTERRUPTED:
+            raise KeyboardInterrupt
+        ended = time.perf_counter()
+        return ready - begun + run.compile, ended - ready - run.compile
+    world = build(method, scene, setting, scenario.setups[method])
+    ready = time.perf_counter()
+    world.advance(round(duration / setting))
+    return ready - begun, time.perf_counter() - ready
+
+
+# What does an engine make of a scenario, and how long does it take?
+#
+# Processor times of the stepping alone: setting up a scene, compiling and computing cells are left out for all.
+
+SAMPLE = 2e-4  # s between looks at other engines; a swing of 4 Hz has 1250
+ENOUGH = 0.9  # of the half swings: fewer, and the watch did not run
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """amplitude in degrees, rate in s/d, x in m of the body that is free; None where there is no such thing."""
+
+    amplitude: float | None = None
+    rate: float | None = None
+    x: float | None = None
+    note: str = ""
+
+
+def outcome(scenario: Scenario, method: str, setting: float) -> Outcome:
+    """What comes out; `note` says what went wrong."""
+    if method in (EVENT_DRIVEN, MOREAU):
+        return _own(scenario, method, setting)
+    return _other(scenario, method, setting)
+
+
+def cpu_seconds(scenario: Scenario, method: str, setting: float, duration: float) -> float:
+    """Processor time to step through the first `duration` seconds."""
+    if method in (EVENT_DRIVEN, MOREAU):
+        return _own_run(scenario, method, setting, duration)[1]
+    world = build(method, scenario.scene, setting, scenario.setups[method])
+    steps = round(duration / setting)
+    begun = time.process_time()
+    world.advance(steps)
+    return time.process_time() - begun
+
+
+def _own_run(scenario: Scenario, method: str, setting: float, duration: float) -> tuple[Trajectory, float]:
+    scene, keep = scenario.scene, Recording(keep="statistics")
+    compiled = compile_scene(scene)
+    run = Run(scene, compiled, setting, keep) if method == EVENT_DRIVEN else MoreauRun(scene, compiled, 1e-9, keep, setting)
+    run.warm_up()
+    begun = time.process_time()
+    stop = run.to_the_end(duration, None)
+    taken = time.process_time() - begun
+    if stop == Stop.INTERRUPTED:
+        raise KeyboardInterrupt  # half a run is no result
+    return trajectory_of(run, stop, taken, 0.0), taken
+
+
+def _own(scenario: Scenario, method: str, setting: float) -> Outcome:
+    run, _ = _own_run(scenario, method, setting, scenario.duration)
+    if run.stop != Stop.DURATION:
+        return Outcome(note=run.stop.sentence)
+    if scenario.window is None:
+        return Outcome(x=float(run.end_q[0]))
+    means = mean_over(run, scenario.window)
+    return Outcome(means.amplitude_deg, means.rate_s_per_d, note=_verdict(means.beats, scenario))
+
+
+def _verdict(beats: int, scenario: Scenario) -> str:
+    assert scenario.window is not None
+    length = scenario.window[1] - scenario.window[0]
+    wanted = 2.0 * length / _period(scenario)
+    return "" if beats >= ENOUGH * wanted else "does not run"
+
+
+def _period(scenario: Scenario) -> float:
+    scene = scenario.scene
+    spring = scene.springs[0]
+    return float(2.0 * np.pi * np.sqrt(scene.body(spring.body).inertia / spring.stiffness))
+
+
+def _other(scenario: Scenario, method: str, setting: float) -> Outcome:
+    scene = scenario.scene
+    world = build(method, scene, setting, scenario.setups[method])
+    if scenario.window is None:
+        free = next(body.name for body in scene.bodies if body.motion == "free")
+        world.advance(round(scenario.duration / setting))
+        return Outcome(x=world.place(free)[0])
+    spring = scene.springs[0]
+    stride = max(1, round(SAMPLE / setting))
+    count = round(scenario.duration / (stride * setting))
+    angles = np.empty(count)
+    for i in range(count):
+        world.advance(stride)
+        angles[i] = world.place(spring.body)[2] - spring.rest
+    times = stride * setting * np.arange(1.0, count + 1.0, dtype=np.float64)
+    amplitude, period, beats = swing(times, angles, scenario.window)
+    note = _verdict(beats, scenario)
+    if note or amplitude is None or period is None:
+        return Outcome(note=note or "does not run")
+    return Outcome(float(np.degrees(amplitude)), DAY * (_period(scenario) / period - 1.0), note=note)
+
+
+# How is the comparison put into words?
+
+COLUMNS = ("setting", "time, s per simulated s", "spread", "error of amplitude", "of rate", "of place")
+
+
+def table(rows: Sequence[Mapping[str, Any]], references: Sequence[Mapping[str, Any]]) -> str:
+    """In Markdown: for each scene what counts as true, then a line for each setting of each engine."""
+    parts = []
+    for reference in references:
+        own = [row for row in rows if row["scene"] == reference["scene"]]
+        parts += [f"### {reference['scene']}", "", truth_text(reference), "", *_lines(own), ""]
+    return "\n".join(parts)
+
+
+def truth_text(reference: Mapping[str, Any]) -> str:
+    """The reference, and what confirms it."""
+    truth = reference["truth"]
+    values = []
+    if truth["amplitude"] is not None:
+        values = [f"amplitude {truth['amplitude']:.6f}°", f"rate {truth['rate']:.6f} s/d"]
+    if truth["x"] is not None:
+        values = [f"x = {truth['x']:.12f} m"]
+    off = [
+        f"{reference[name]:.1g}{unit}"
+        for name, unit in (("amplitude_off_deg", "°"), ("rate_off_s_per_d", " s/d"), ("state_off_m", " m"))
+        if reference[name] is not None
+    ]
+    return f"Reference: {', '.join(values)} ({reference['source']}). {reference['confirmed_by']}: differs by {', '.join(off)}."
+
+
+def _lines(rows: Sequence[Mapping[str, Any]]) -> list[str]:
+    head = "| engine | " + " | ".join(COLUMNS) + " |"
+    return [head, "|---" * (len(COLUMNS) + 1) + "|", *(_line(row) for row in rows)]
+
+
+def _line(row: Mapping[str, Any]) -> str:
+    step = row["method"] in MODULES or row["method"] == "moreau"
+    setting = f"step {1e6 * row['setting']:g} µs" if step else f"tolerance {row['setting']:.0e}"
+    time, least, most = row["wall_s_per_simulated_s"], row["wall_least"], row["wall_largest"]
+    errors = [
+        f"{row[name]:.1e}{unit}" if row[name] is not None else ""
+        for name, unit in (("error_amplitude_deg", "°"), ("error_rate_s_per_d", " s/d"), ("error_state", " m"))
+    ]
+    if row["note"]:
+        errors = [row["note"], "", ""]
+    engine = f"{row['method']} {row['version']}".strip()
+    spread = f"{least:.3g} to {most:.3g} ({row['repeats']} {'run' if row['repeats'] == 1 else 'runs'})"
+    cells = (engine, setting, f"{time:.3g}", spread, *errors)
+    return "| " + " | ".join(cells) + " |"
+
+
+# How far off is each engine at each setting, and how long does it take for a simulated second?
 
 REPEATS = 5
 ANOTHER_WAY = 30.0  # degrees of amplitude: not a matter of accuracy any more

@@ -11,17 +11,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc
 from watchsim.mechanism.compile import compile_scene
-from watchsim.profiles_path import profiles_dir
-from watchsim.scene.body import Body
-from watchsim.scene.file.load import load
-from watchsim.scene.force import Contact
-from watchsim.scene.recording import Recording
-from watchsim.scene.scene import Scene
+from watchsim.paths import profiles_dir
+from watchsim.scene.forces import Contact
+from watchsim.scene.load import load
+from watchsim.scene.scene import Body, Recording, Scene
 from watchsim.simulation.runner import Run
-from watchsim.simulation.stops import Stop
+from watchsim.simulation.state import Stop
 
 DISTANCE = 0.03  # m between levers side by side
 APART = 0.013  # rad between the start angles of their balances, so that they do not tick at one instant

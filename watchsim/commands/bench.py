@@ -9,10 +9,11 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from watchsim.commands.common.console import FINE, announce_compile, print_json, say
+from watchsim.commands.console import FINE, announce_compile, print_json, say
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
 
 FILES = ("bench.json", "bench.md", "bench.png")
 HELP = "speed against error, beside other engines: table and plot"
@@ -27,7 +28,7 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     from watchsim.bench.compare import missing_engines
-    from watchsim.commands.common.output_place import secured_file, secured_folder
+    from watchsim.commands.inputs import secured_file, secured_folder
 
     folder = Path(args.output)
     if not folder.is_dir():
@@ -42,7 +43,7 @@ def run(args: argparse.Namespace) -> int:
     if args.json:
         print_json(rows)
     else:
-        from watchsim.bench.comparison_table import table
+        from watchsim.bench.compare import table
 
         print(table(rows, references))
     say(f"Results: {args.output}")
@@ -74,8 +75,8 @@ def measured(
 
 def write(folder: Path, rows: list[dict[str, Any]], references: list[dict[str, Any]]) -> None:
     """bench.json, bench.md and bench.png."""
-    from watchsim.bench.comparison_table import table
-    from watchsim.render.figures.speed_plot import plot_speed
+    from watchsim.bench.compare import table
+    from watchsim.render.phase_bands import plot_speed
     from watchsim.results.tables import json_text
     from watchsim.storage.write import write_file
 

@@ -20,15 +20,16 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, NoReturn
 
 from watchsim import stopping
-from watchsim.storage.nameless import give_name, nameless
+from watchsim.storage.destination import give_name, nameless
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from watchsim.render.figures.kinematics_plot import Kinematics
+    from watchsim.render.kinematics_plot import Kinematics
     from watchsim.results.tables import EventLines
     from watchsim.scene.scene import Scene
-    from watchsim.simulation.record.trajectory import Pair
+    from watchsim.simulation.recording import Pair
+
 
 Draws = Mapping[str, Callable[[Path | IO[bytes]], object]]  # by the name of the picture in the results folder
 BUSY = 0.2  # s: at first the loop comes back to Python again and again, for cells that it meets for the first time
@@ -73,7 +74,7 @@ class Meanwhile:
 def _load() -> None:
     """Load what works out the numbers of a run."""
     import watchsim.analysis.summary
-    import watchsim.analysis.timeline.timeline_table  # noqa: F401
+    import watchsim.analysis.timeline  # noqa: F401
 
 
 def can_copy() -> bool:

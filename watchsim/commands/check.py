@@ -7,13 +7,14 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from watchsim.commands.common.console import BAD_INPUT, FINE, MISSED, InputError, check_picture, parse_width, print_json, say
+from watchsim.commands.console import BAD_INPUT, FINE, MISSED, InputError, check_picture, parse_width, print_json, say
 
 if TYPE_CHECKING:
     from watchsim.escapement.measure import Function
+    from watchsim.mechanism.check import ModelledPairs
     from watchsim.mechanism.compile import Compiled
-    from watchsim.mechanism.count_pairs import ModelledPairs
     from watchsim.scene.scene import Scene
+
 
 SHEETS = (".png", ".svg", ".pdf")
 HELP = "everything short of simulating: units, overlap at the start, mass, frequency, what can touch"
@@ -49,16 +50,13 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     _check_options(args)
-    from watchsim.commands.common.inputs import load_scene
-    from watchsim.commands.common.output_place import secured_file
+    from watchsim.commands.inputs import load_scene, secured_file
     from watchsim.drawing.findings import Finding
-    from watchsim.escapement.function_report import statics, text
+    from watchsim.escapement.function_report import judgements, statics, text
     from watchsim.escapement.measure import measure
-    from watchsim.escapement.rules import judgements
+    from watchsim.mechanism.check import check_report, check_text, modelled_pairs
     from watchsim.mechanism.compile import compile_scene
-    from watchsim.mechanism.count_pairs import modelled_pairs
-    from watchsim.mechanism.static_check import check_report, check_text
-    from watchsim.simulation.start_clearance import refusals
+    from watchsim.simulation.start import refusals
 
     width = parse_width(args.width)
     sheets = [Path(args.sheet)] if args.sheet else []
@@ -82,7 +80,7 @@ def run(args: argparse.Namespace) -> int:
     wrong = any(finding["severity"] == "error" for finding in report["findings"])
     turned = None
     if args.turn and not wrong:
-        from watchsim.commands.common.turned_by_hand import turned_by_hand
+        from watchsim.commands.pictures import turned_by_hand
 
         turned = turned_by_hand(scene, args.swing, args.movie, args.png, args.dark)
         report["turn"] = turned.report
@@ -113,15 +111,15 @@ def _check_options(args: argparse.Namespace) -> None:
 
 
 def _still(scene: Scene, compiled: Compiled, pairs: ModelledPairs, report: Mapping[str, Any], path: str, dark: bool) -> None:
-    from watchsim.render.stills.still import still
+    from watchsim.render.still import still
 
     places = [(1e-3 * f["x_mm"], 1e-3 * f["y_mm"]) for f in report["findings"] if f["code"] == "overlap"]
     still(scene, path, compiled, pairs, places, dark)
 
 
 def _sheet(scene: Scene, compiled: Compiled, function: Function, path: Path, width: float, on_dark: bool) -> None:
-    from watchsim.render.dark_figure import dark
-    from watchsim.render.stills.function_sheet import function_sheet, write_sheet
+    from watchsim.render.function_sheet import function_sheet, write_sheet
+    from watchsim.render.palette import dark
 
     try:
         figure = function_sheet(scene, compiled, function, 1e3 * width)

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from watchsim import stopping
-from watchsim.commands.common.console import FINE, MISSED, announce_compile
+from watchsim.commands.console import FINE, MISSED, announce_compile
 
 HELP = "the incline check and a ticking Swiss lever: numbers, plots, MP4 and GIF"
 DURATION = 10.0
@@ -24,13 +24,12 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     from watchsim.analysis.summary import summary_text
-    from watchsim.commands.common.inputs import load_scene
-    from watchsim.commands.common.output_place import secured_file, secured_folder
-    from watchsim.commands.common.write_run import Extras, goal_of, write
+    from watchsim.commands.inputs import load_scene, secured_file, secured_folder
     from watchsim.commands.run import simulate_with_progress, status
-    from watchsim.profiles_path import profiles_dir
-    from watchsim.results.write_results import check_folder
-    from watchsim.verification.all_checks import incline_rows, verify_text
+    from watchsim.commands.write import Extras, goal_of, write
+    from watchsim.paths import profiles_dir
+    from watchsim.results.folder import check_folder
+    from watchsim.verification.verify import incline_rows, verify_text
 
     start = time.monotonic()
     parent = Path(args.output)
@@ -87,11 +86,11 @@ def _ticking(summary: Mapping[str, Any]) -> str:
 
 def _incline_picture(folder: Path) -> Path:
     """The kinematic plot of the bouncing disc, the first picture a newcomer sees."""
-    from watchsim.commands.common.inputs import load_scene
-    from watchsim.profiles_path import profiles_dir
-    from watchsim.render.figures.kinematics_plot import plot_kinematics
+    from watchsim.commands.inputs import load_scene
+    from watchsim.paths import profiles_dir
+    from watchsim.render.kinematics_plot import plot_kinematics
     from watchsim.simulation.simulate import simulate
-    from watchsim.simulation.stops import Stop
+    from watchsim.simulation.state import Stop
     from watchsim.storage.write import write_file
 
     run = simulate(load_scene(str(profiles_dir() / "incline")))

@@ -9,14 +9,14 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from watchsim.commands.common.console import FINE, InputError, parse_names, parse_positive, parse_window, print_json, say
+from watchsim.commands.console import FINE, InputError, parse_names, parse_positive, parse_window, print_json, say
 
 if TYPE_CHECKING:
-    from watchsim.geometry.gltf_motion import Track
+    from watchsim.geometry.meshes import Track
     from watchsim.render.palette import Finish
-    from watchsim.scene.body import Body
     from watchsim.scene.layer_heights import Slab
-    from watchsim.scene.scene import Scene
+    from watchsim.scene.scene import Body, Scene
+
 
 HELP = "outlines as DXF and SVG, bodies as GLB and STL"
 FORMATS = ("dxf", "svg", "glb", "stl")
@@ -49,8 +49,7 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from watchsim.commands.common.inputs import load_scene
-    from watchsim.commands.common.output_place import secured_folder
+    from watchsim.commands.inputs import load_scene, secured_folder
     from watchsim.storage.write import write_folder
     from watchsim.units import LENGTH
 
@@ -80,10 +79,10 @@ def run(args: argparse.Namespace) -> int:
 
 def _motion(args: argparse.Namespace, formats: Sequence[str]) -> list[Track]:
     """How the bodies move, where a results folder was given; InputError where anything else has a window or speed."""
-    from watchsim.commands.common.inputs import read_run
-    from watchsim.commands.common.run_pictures import filmed
+    from watchsim.commands.inputs import read_run
     from watchsim.commands.movie import parse_speed
-    from watchsim.results.write_results import TRAJECTORY
+    from watchsim.commands.pictures import filmed
+    from watchsim.results.folder import TRAJECTORY
 
     is_run = (Path(args.scene) / TRAJECTORY).is_file()
     asked = [option for option in ("window", "speed") if getattr(args, option) is not None]
@@ -104,7 +103,7 @@ def _motion(args: argparse.Namespace, formats: Sequence[str]) -> list[Track]:
 
 
 def _chosen(scene: Scene, names: list[str] | None) -> tuple[Body, ...]:
-    from watchsim.scene.file.keys.schema import nearest
+    from watchsim.scene.keys import nearest
 
     known = [body.name for body in scene.bodies]
     for name in names or ():
@@ -114,7 +113,7 @@ def _chosen(scene: Scene, names: list[str] | None) -> tuple[Body, ...]:
 
 
 def _name(scene: Scene) -> str:
-    from watchsim.scene.file.load import SCENE_FILES
+    from watchsim.scene.load import SCENE_FILES
 
     if scene.path is None:
         return "scene"
@@ -147,7 +146,7 @@ def _contents(
     motion: Sequence[Track] = (),
 ) -> tuple[dict[str, bytes], dict[str, Any]]:
     """The files by name, and what the manifest says about them."""
-    from watchsim.geometry.solids.meshes import glb, stl
+    from watchsim.geometry.meshes import glb, stl
     from watchsim.render.palette import looks
     from watchsim.scene.layer_heights import slabs
 
@@ -167,14 +166,14 @@ def _contents(
             "sides. Mend the thickness in its solids or of --thickness, or leave solids out with --format dxf,svg."
         )
     if "glb" in formats:
-        from watchsim.render.placed_solids import placed_solids
+        from watchsim.render.keyframes import placed_solids
 
         placed = placed_solids(scene, stacked, deviation)
         found.update((f"{stems[part.name]}.glb", glb([type(part)(part.name, part.pieces)])) for part in placed)
         if placed:
             found["scene.glb"] = glb(placed, motion)
     if "stl" in formats:
-        from watchsim.render.placed_solids import closed_solids
+        from watchsim.render.keyframes import closed_solids
 
         found.update((f"{stems[part.name]}.stl", stl(part)) for part in closed_solids(scene, stacked, deviation))
     if not found:
@@ -184,8 +183,7 @@ def _contents(
 
 def _drawings(body: Body, look: Finish, formats: Sequence[str]) -> Iterator[tuple[str, str]]:
     """The outlines of one body in its own frame, the pivot at the origin and marked."""
-    from watchsim.drawing.dxf.write_dxf import dxf_text
-    from watchsim.drawing.svg.write_svg import svg_text
+    from watchsim.drawing.write import dxf_text, svg_text
     from watchsim.render.palette import finish
 
     loops = (*body.loops, *body.decoration)

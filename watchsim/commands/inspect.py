@@ -11,10 +11,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from watchsim.commands.common.console import BAD_INPUT, FINE, InputError, check_picture, parse_positive, print_json, say
+from watchsim.commands.console import BAD_INPUT, FINE, InputError, check_picture, parse_positive, print_json, say
 
 if TYPE_CHECKING:
     from watchsim.drawing.drawing import Drawing
+
 
 HELP = "read a drawing: units, size, layers, loops, lines, arcs, faults"
 
@@ -31,7 +32,7 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from watchsim.commands.common.output_place import secured_file
+    from watchsim.commands.inputs import secured_file
     from watchsim.drawing.inspection import inspect_report, inspect_text
     from watchsim.drawing.read import read
     from watchsim.units import LENGTH
@@ -49,7 +50,7 @@ def run(args: argparse.Namespace) -> int:
         drawing = _only(drawing, [name.strip() for name in args.layer.split(",")])
     unreadable = not drawing.layers and any(finding.severity == "error" for finding in drawing.findings)
     if args.png and not unreadable:
-        from watchsim.render.stills.drawing_picture import draw_drawing
+        from watchsim.render.drawing_picture import draw_drawing
 
         draw_drawing(drawing, args.png, centres=args.centres)
         say(f"Picture: {args.png}")

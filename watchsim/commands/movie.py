@@ -6,7 +6,7 @@ import argparse
 from fractions import Fraction
 from pathlib import Path
 
-from watchsim.commands.common.console import FINE, InputError, Progress, parse_names, parse_positive, parse_window, say
+from watchsim.commands.console import FINE, InputError, Progress, parse_names, parse_positive, parse_window, say
 
 HELP = "MP4 or GIF of a results folder, by the file's ending"
 
@@ -55,10 +55,9 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from watchsim.commands.common.inputs import read_run
-    from watchsim.commands.common.output_place import secured_file, swept_run
-    from watchsim.render.movies.encoder import check_path
-    from watchsim.render.movies.run_movie import ADAPTIVE, movie
+    from watchsim.commands.inputs import read_run, secured_file, swept_run
+    from watchsim.render.encoder import check_path
+    from watchsim.render.movie import ADAPTIVE, movie
     from watchsim.units import TIME
 
     speed, size = (args.speed if args.speed == ADAPTIVE else parse_speed(args.speed)), _size(args.size)

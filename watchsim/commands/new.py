@@ -7,11 +7,11 @@ import textwrap
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from watchsim.commands.common.console import FINE, InputError, print_json, say
+from watchsim.commands.console import FINE, InputError, print_json, say
 
 if TYPE_CHECKING:
-    from watchsim.construction.design import Design
-    from watchsim.construction.dimension import Dimension
+    from watchsim.construction.design import Design, Dimension
+
 
 HELP = "starts a scene: a mechanism drawn to your dimensions, or what drawings suggest, with guesses marked"
 WIDTH = 110
@@ -44,8 +44,8 @@ def _common(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from watchsim.commands.common.from_drawings import is_drawing
-    from watchsim.scene.file.designed import designed
+    from watchsim.commands.inputs import is_drawing
+    from watchsim.scene.designed import designed
 
     asked = {"output": None, "list": False, "json": False, "force": False, **vars(args)}
     if asked["design"] is None:
@@ -67,7 +67,7 @@ def run(args: argparse.Namespace) -> int:
 
 def _from_drawings(asked: dict[str, Any]) -> None:
     """The first drawing, and those among the words behind it; the others are options."""
-    from watchsim.commands.common.from_drawings import start_from_drawings
+    from watchsim.commands.inputs import start_from_drawings
 
     parser = argparse.ArgumentParser(prog="watchsim new", usage=DRAWINGS_USAGE, allow_abbrev=False)
     _common(parser)
@@ -97,7 +97,7 @@ def _dimensions(design: Design, rest: list[str], asked: dict[str, Any]) -> dict[
 
 
 def _unknown(design: Design, word: str) -> str:
-    from watchsim.scene.file.keys.schema import nearest
+    from watchsim.scene.keys import nearest
 
     if not word.startswith("-"):
         first = design.dimensions[0]
@@ -108,7 +108,7 @@ def _unknown(design: Design, word: str) -> str:
 
 
 def _list_designs(as_json: bool) -> None:
-    from watchsim.construction import known
+    from watchsim.construction import registry as known
 
     designs = [known.design(name) for name in known.NAMES]
     if as_json:
@@ -144,11 +144,11 @@ def _range(one: Dimension) -> str:
 
 
 def _write(design: Design, given: dict[str, object], asked: dict[str, Any]) -> None:
-    from watchsim.commands.common.output_place import secured_folder
+    from watchsim.commands.inputs import secured_folder
     from watchsim.designs import Drawn
     from watchsim.mechanism.overlap import overlap_faults
+    from watchsim.scene.designed import chosen
     from watchsim.scene.errors import SceneError
-    from watchsim.scene.file.design_dimensions import chosen
 
     folder = Path(asked["output"] or design.name)
     drawn = Drawn(design, chosen(design, given))

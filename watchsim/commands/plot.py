@@ -6,10 +6,11 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from watchsim.commands.common.console import FINE, InputError, parse_names, parse_width, parse_window, say
+from watchsim.commands.console import FINE, InputError, parse_names, parse_width, parse_window, say
 
 if TYPE_CHECKING:
-    from watchsim.simulation.record.trajectory import Trajectory
+    from watchsim.simulation.trajectory import Trajectory
+
 
 HELP = "plots of a results folder, for screen and print"
 FORMATS = ("png", "svg", "pdf")
@@ -51,11 +52,10 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from watchsim.commands.common.inputs import read_run
-    from watchsim.commands.common.output_place import secured_file, swept_run
-    from watchsim.commands.common.plot_kinds import KINDS, Request
-    from watchsim.render.dark_figure import dark
-    from watchsim.render.figures.figure_style import save
+    from watchsim.commands.inputs import read_run, secured_file, swept_run
+    from watchsim.commands.pictures import KINDS, Request
+    from watchsim.render.palette import dark
+    from watchsim.render.style import save
     from watchsim.storage.write import write_file
 
     kinds = _kinds(args)
@@ -90,7 +90,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _kinds(args: argparse.Namespace) -> list[str]:
-    from watchsim.commands.common.plot_kinds import chosen
+    from watchsim.commands.pictures import chosen
 
     if args.kind is None:
         names = [] if args.tape or args.phases else ["kinematics"]
@@ -120,8 +120,7 @@ def _places(args: argparse.Namespace, kinds: list[str], formats: list[str]) -> d
 
 
 def _print_timeline(run: Trajectory, window: tuple[float, float] | None) -> None:
-    from watchsim.analysis.timeline.shown_beats import shown_beats
-    from watchsim.analysis.timeline.timeline_table import timeline_text
+    from watchsim.analysis.timeline import shown_beats, timeline_text
 
     try:
         print(timeline_text(run, shown_beats(run, window)))

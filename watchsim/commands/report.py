@@ -7,7 +7,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from watchsim.commands.common.console import FINE, parse_window
+from watchsim.commands.console import FINE, parse_window
 
 HELP = "one self-contained HTML page: player, timing sheet, plots"
 
@@ -21,8 +21,7 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from watchsim.commands.common.inputs import read_run
-    from watchsim.commands.common.output_place import secured_file, swept_run
+    from watchsim.commands.inputs import read_run, secured_file, swept_run
     from watchsim.pages.report_page import check_page, report
 
     window = parse_window(args.window)
@@ -35,7 +34,7 @@ def run(args: argparse.Namespace) -> int:
 
 def _numbers(folder: str) -> dict[str, Any] | None:
     """The summary as the run wrote it, which knows its error bars and promises; None where it cannot be read."""
-    from watchsim.results.write_results import SUMMARY
+    from watchsim.results.folder import SUMMARY
 
     try:
         found = json.loads((Path(folder) / SUMMARY).read_text(encoding="utf-8"))

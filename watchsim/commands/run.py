@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from watchsim import stopping
 from watchsim.commands.beside import Meanwhile
-from watchsim.commands.common.console import (
+from watchsim.commands.console import (
     FINE,
     GAVE_UP,
     MISSED,
@@ -24,16 +24,16 @@ from watchsim.commands.common.console import (
     print_json,
     say,
 )
-from watchsim.commands.common.output_place import claimed, interrupted_place, secured_folder, swept_run
-from watchsim.commands.common.record_size import room_for
-from watchsim.commands.common.write_run import Extras, goal_of, report_text, write
-from watchsim.simulation.methods import EVENT_DRIVEN, METHODS
+from watchsim.commands.inputs import claimed, interrupted_place, room_for, secured_folder, swept_run
+from watchsim.commands.write import Extras, goal_of, report_text, write
+from watchsim.simulation.state import EVENT_DRIVEN, METHODS
 
 if TYPE_CHECKING:
-    from watchsim.render.figures.kinematics_plot import Kinematics
+    from watchsim.render.kinematics_plot import Kinematics
     from watchsim.results.tables import EventLines
     from watchsim.scene.scene import Scene
-    from watchsim.simulation.record.trajectory import Trajectory
+    from watchsim.simulation.trajectory import Trajectory
+
 
 FAR = 1e8  # a balance has a thousand times the inertia of a lever
 HELP = "simulate a scene and write a results folder"
@@ -76,10 +76,10 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _run(args: argparse.Namespace, held: contextlib.ExitStack) -> int:
-    from watchsim.commands.common.inputs import load_scene
-    from watchsim.mechanism.notes import notes
-    from watchsim.results.write_results import check_folder
-    from watchsim.simulation.stops import Stop
+    from watchsim.commands.inputs import load_scene
+    from watchsim.mechanism.check import notes
+    from watchsim.results.folder import check_folder
+    from watchsim.simulation.state import Stop
     from watchsim.units import TIME
 
     if args.scene is None and args.resume is None:
@@ -154,7 +154,7 @@ def simulate_with_progress(
 
     Also gives what was made meanwhile: its events as text, as far as they go, and panels for its plots.
     """
-    from watchsim.commands.common.run_pictures import empty_panels
+    from watchsim.commands.pictures import empty_panels
     from watchsim.simulation.simulate import simulate
     from watchsim.storage.write import real
 
@@ -180,7 +180,7 @@ def simulate_with_progress(
 
 def _earlier(folder: str, scene: Scene) -> Trajectory:
     """The run to go on from, its scene replaced by the one given, which must be the same (see `simulate`)."""
-    from watchsim.results.read_results import read_results
+    from watchsim.results.folder import read_results
 
     run = read_results(folder)
     if run.end_state is None:
@@ -191,8 +191,8 @@ def _earlier(folder: str, scene: Scene) -> Trajectory:
 def status(run: Trajectory, summary: dict[str, Any]) -> int:
     """Exit status of a finished run; says why on stderr where it is not 0."""
     from watchsim.analysis.headlines import expected_text
-    from watchsim.analysis.verdicts.verdict_kinds import SPOKEN
-    from watchsim.simulation.stops import Stop
+    from watchsim.analysis.verdict_kinds import SPOKEN
+    from watchsim.simulation.state import Stop
 
     if run.stop.is_wrong:
         say(f"The result is wrong: {run.stop_message}. It is kept for inspection.")
@@ -243,8 +243,8 @@ def _check_windows(scene: Scene, duration: float, asked: bool) -> None:
 
 def _record(what: str) -> object:
     """A window as the scene file has it, or the word; InputError where it is neither."""
-    from watchsim.scene.file.readers.read_record import is_stride
-    from watchsim.scene.recording import EVERY, KEPT
+    from watchsim.scene.read_settings import is_stride
+    from watchsim.scene.scene import EVERY, KEPT
 
     if ":" in what:
         parse_window(what, "--record")
@@ -257,7 +257,7 @@ def _record(what: str) -> object:
 
 def _name(scene: Scene) -> str:
     """A folder name for the results: the scene's folder, with the file's own name where it is not scene.toml."""
-    from watchsim.scene.file.load import SCENE_FILES
+    from watchsim.scene.load import SCENE_FILES
 
     path = scene.path
     if path is None:

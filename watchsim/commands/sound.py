@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from watchsim.commands.common.console import FINE, InputError, Progress, parse_positive, say
+from watchsim.commands.console import FINE, InputError, Progress, parse_positive, say
 
 HELP = "the ticking of a results folder as WAV"
 
@@ -21,10 +21,8 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from watchsim.analysis.sound.score import score
-    from watchsim.analysis.sound.wav import check_length, sound, told, wav_path
-    from watchsim.commands.common.inputs import read_run
-    from watchsim.commands.common.output_place import secured_file, swept_run
+    from watchsim.analysis.sound import check_length, score, sound, told, wav_path
+    from watchsim.commands.inputs import read_run, secured_file, swept_run
     from watchsim.units import TIME
 
     duration = None if args.duration is None else parse_positive("--duration", args.duration, TIME)

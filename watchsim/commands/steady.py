@@ -5,10 +5,11 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from watchsim.commands.common.console import FINE, MISSED, announce_compile, check_tolerance, print_json
+from watchsim.commands.console import FINE, MISSED, announce_compile, check_tolerance, print_json
 
 if TYPE_CHECKING:
-    from watchsim.studies.limit_cycle.cycle import Cycle
+    from watchsim.studies.cycle import Cycle
+
 
 HELP = "amplitude, rate and beat error that a watch settles to, without waiting for it"
 LABEL = 13
@@ -23,8 +24,8 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from watchsim.commands.common.inputs import load_scene
-    from watchsim.studies.limit_cycle.find_cycle import steady
+    from watchsim.commands.inputs import load_scene
+    from watchsim.studies.steady import steady
 
     check_tolerance(args.tol)
     scene = load_scene(args.scene, args.set)

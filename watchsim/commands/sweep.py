@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from watchsim import stopping
-from watchsim.commands.common.console import (
+from watchsim.commands.console import (
     FINE,
     GAVE_UP,
     MISSED,
@@ -30,8 +30,9 @@ from watchsim.commands.common.console import (
 
 if TYPE_CHECKING:
     from watchsim.scene.scene import Scene
-    from watchsim.studies.outputs import Output
-    from watchsim.studies.workers.executor import Executor
+    from watchsim.studies.point import Output
+    from watchsim.studies.workers import Executor
+
 
 HELP = "parameter study: table and plot; or what matters in a watch (--sensitivity)"
 
@@ -65,8 +66,8 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from watchsim.commands.common.inputs import load_scene
-    from watchsim.studies.outputs import outputs_named
+    from watchsim.commands.inputs import load_scene
+    from watchsim.studies.point import outputs_named
 
     outputs = outputs_named(parse_names(args.outputs) or ())
     check_tolerance(args.tol)
@@ -81,11 +82,11 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _sweep(args: argparse.Namespace, scene: Scene, outputs: tuple[Output, ...], held: contextlib.ExitStack) -> int:
-    from watchsim.commands.common.write_study import write_study
+    from watchsim.commands.write import write_study
     from watchsim.studies.axes import axes_from_texts
-    from watchsim.studies.parameter_sweep import swept
     from watchsim.studies.point import Question
-    from watchsim.studies.study_table import sweep_table
+    from watchsim.studies.study_report import sweep_table
+    from watchsim.studies.sweep import swept
     from watchsim.units import TIME
 
     if not args.keys:
@@ -122,9 +123,9 @@ def _sweep(args: argparse.Namespace, scene: Scene, outputs: tuple[Output, ...], 
 
 
 def _sensitivity(args: argparse.Namespace, scene: Scene, outputs: tuple[Output, ...], held: contextlib.ExitStack) -> int:
-    from watchsim.commands.common.write_study import write_study
+    from watchsim.commands.write import write_study
     from watchsim.studies.sensitivity import found
-    from watchsim.studies.study_table import sensitivity_table
+    from watchsim.studies.study_report import sensitivity_table
 
     folder = _folder(args, scene, held)
     with stopping.keeping():
@@ -155,8 +156,8 @@ def _status(whole: bool, folder: Path, fine: int) -> int:
 
 def _executor(args: argparse.Namespace, points: int | None) -> Executor:
     from watchsim.jit import is_cached
-    from watchsim.studies.parameter_sweep import processors
-    from watchsim.studies.workers.choose_executor import chosen
+    from watchsim.studies.sweep import processors
+    from watchsim.studies.workers import chosen
 
     workers = args.workers or processors()
     if points is not None:
@@ -169,16 +170,16 @@ def _executor(args: argparse.Namespace, points: int | None) -> Executor:
 
 def _compile_once() -> None:
     """Before several processes do it all at once."""
-    from watchsim.profiles_path import profiles_dir
-    from watchsim.scene.file.load import load
-    from watchsim.studies.limit_cycle.run_from_state import Loop
+    from watchsim.paths import profiles_dir
+    from watchsim.scene.load import load
+    from watchsim.studies.section import Loop
 
     Loop(load(profiles_dir() / "balance"), 1e-9).warm_up()
 
 
 def _watched(compute: Callable[[Progress], Any]) -> Any:
     """With a progress line; a worker that was killed is no fault of the program."""
-    from watchsim.studies.workers.executor import WorkersLost
+    from watchsim.studies.workers import WorkersLost
 
     progress = Progress("points:")
     try:
@@ -193,7 +194,7 @@ def _watched(compute: Callable[[Progress], Any]) -> Any:
 
 def _folder(args: argparse.Namespace, scene: Scene, held: contextlib.ExitStack) -> Path:
     """The results folder, made if it is not there; refused where it holds something else."""
-    from watchsim.commands.common.output_place import claimed, secured_folder
+    from watchsim.commands.inputs import claimed, secured_folder
 
     name = scene.path.parent.name if scene.path else "scene"
     what = "sensitivity" if args.sensitivity else "sweep"
@@ -209,7 +210,7 @@ def _folder(args: argparse.Namespace, scene: Scene, held: contextlib.ExitStack) 
 
 
 def _figure_of_sweep(done: Any) -> Any:
-    from watchsim.render.figures.study_plot import plot_sweep
+    from watchsim.render.study_plot import plot_sweep
 
     try:
         return plot_sweep(done) if done.rows else None
@@ -219,6 +220,6 @@ def _figure_of_sweep(done: Any) -> Any:
 
 
 def _figure_of_sensitivity(done: Any) -> Any:
-    from watchsim.render.figures.effects_plot import plot_sensitivity
+    from watchsim.render.study_plot import plot_sensitivity
 
     return plot_sensitivity(done) if done.effects else None

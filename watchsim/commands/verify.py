@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from watchsim.commands.common.console import FINE, MISSED, announce_compile, print_json
+from watchsim.commands.console import FINE, MISSED, announce_compile, print_json
 
 HELP = "closed-form and published benchmarks: expected, got, verdict"
 
@@ -16,7 +16,7 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     from watchsim.results.tables import plain
-    from watchsim.verification.all_checks import verify, verify_text
+    from watchsim.verification.verify import verify, verify_text
 
     announce_compile()
     rows = verify(args.slow)

@@ -1,31 +1,162 @@
-"""What is a design: dimensions, and how drawings and a scene follow from them?
-
-A design is declared in three steps:
-
-    @dataclass(frozen=True)
-    class Pendulum:                                    # its values: one field per dimension, in the dimension's own unit
-        length: float = dim(200.0, "mm", 10.0, 2000.0, "from the pivot to the middle of the bob", "chosen")
-
-    def draw(values: Pendulum) -> dict[str, Sheet]: ...     # file name without ending -> outlines, millimetres
-    def scene(values: Pendulum) -> str: ...                 # commented TOML; `drawing = "bob.dxf"` names a sheet
-    def conflicts(values: Pendulum) -> Iterator[Conflict]: ...  # what cannot be drawn or cannot work, and why
-
-    DESIGN = Design("pendulum", "Simple pendulum", Pendulum, draw, scene, conflicts)
-
-and named in construction/known.py. Limits of single dimensions are checked before `conflicts` is asked, and nothing is drawn
-where either objects. Everything is a function of the values alone, so that equal values give equal bytes.
-"""
+"""Are the outlines of a sheet sound, once they are read back from its file?"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
-from functools import cached_property
-from typing import Any
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, fields
+from functools import cached_property, lru_cache
+from pathlib import Path
+from typing import Any, Protocol
 
-from watchsim.construction.dimension import Dimension, dimensions_of
-from watchsim.construction.outline_check import unsound
-from watchsim.drawing.sheet import Sheet
+from watchsim.drawing.drawing import Drawing
+from watchsim.drawing.read import SNAP, read_data
+from watchsim.drawing.write import Sheet
+
+# What is a dimension of a design: which number may a designer choose, and within which limits?
+
+_KEY = "dimension"
+
+
+@dataclass(frozen=True, slots=True)
+class Dimension:
+    """A number that a designer chooses. `default`, `low` and `high` are in `unit`, a spelling of watchsim.units ("" for plain
+    numbers and counts); `source` says where the default or the limits come from. A `count` must be a whole number."""
+
+    name: str
+    meaning: str
+    unit: str
+    default: float
+    low: float
+    high: float
+    source: str
+    count: bool = False
+
+    @property
+    def option(self) -> str:
+        """As an option of the command line: "tip_radius" is --tip-radius."""
+        return f"--{self.name.replace('_', '-')}"
+
+    def shown(self, value: float) -> str:
+        """The value with the unit, as a scene file has it: "1.5°", "2.4 mm", "15"."""
+        number = repr(value).removesuffix(".0")
+        return f"{number}{'' if self.unit in ('', '°') else ' '}{self.unit}"
+
+    def shortly(self, value: float) -> str:
+        """The same with six digits, to read."""
+        return self.shown(float(f"{value:.6g}"))
+
+
+def dim(default: float, unit: str, low: float, high: float, meaning: str, source: str) -> Any:
+    """The field of a design's values that holds one dimension; a whole number as default makes it a count."""
+    told = {"meaning": meaning, "unit": unit, "default": default, "low": low, "high": high, "source": source}
+    return field(default=default, metadata={_KEY: {**told, "count": isinstance(default, int)}})
+
+
+def dimensions_of(values: type[Any]) -> tuple[Dimension, ...]:
+    """The dimensions that a dataclass of values declares with `dim`, in its order."""
+    return tuple(Dimension(one.name, **one.metadata[_KEY]) for one in fields(values) if _KEY in one.metadata)
+
+
+# How are the contacts of a design written into its scene?
+
+NOTED = 37  # column at which remarks begin
+
+
+class Law(Protocol):
+    """Dimensions with the two coefficients that all contacts of a design share."""
+
+    @property
+    def friction(self) -> float: ...
+
+    @property
+    def restitution(self) -> float: ...
+
+
+def contact_tables(law: Law, *pairs: tuple[str, str] | tuple[str, str, str]) -> str:
+    """One [[contacts]] table for each pair of sides, "body.LAYER"; a third text is a remark behind the heading."""
+    return "\n".join(_table(law, *pair) for pair in pairs)
+
+
+def _table(law: Law, first: str, second: str, remark: str = "") -> str:
+    heading = f"{'[[contacts]]':{NOTED}}# {remark}" if remark else "[[contacts]]"
+    return f"""\
+{heading}
+between     = ["{first}", "{second}"]
+friction    = {law.friction!r}
+restitution = {law.restitution!r}
+"""
+
+
+# How is the leaf of a design written into its scene?
+
+STEEL = 200e9  # Pa
+
+
+class Leaf(Protocol):
+    """Dimensions with those of a leaf of steel and of the arm at which it presses, mm."""
+
+    @property
+    def leaf_length(self) -> float: ...
+
+    @property
+    def leaf_width(self) -> float: ...
+
+    @property
+    def leaf_thickness(self) -> float: ...
+
+    @property
+    def leaf_arm(self) -> float: ...
+
+
+def leaf_text(values: Leaf) -> str:
+    """What stands between the braces of `leaf = { }`."""
+    sizes = (
+        ("length", values.leaf_length),
+        ("width", values.leaf_width),
+        ("thickness", values.leaf_thickness),
+        ("arm", values.leaf_arm),
+    )
+    return ", ".join([f'modulus = "{STEEL * 1e-9:g} GPa"', *(f'{name} = "{size!r} mm"' for name, size in sizes)])
+
+
+# Are the outlines of a sheet sound, once they are read back from its file?
+
+
+@lru_cache(maxsize=256)
+def drawing_of(sheet: Sheet, name: str, snap: float = SNAP) -> Drawing:
+    """The drawing of a sheet, by way of its DXF: what is simulated is then what a file of it holds, to the last bit.
+
+    Made once per sheet: of a design of which one dimension changes, most sheets stay as they are.
+    """
+    return read_data(sheet.dxf(), Path(name), snap=snap)
+
+
+def unsound(sheet: Sheet, name: str) -> Iterator[str]:
+    """What is wrong with the outlines, a sentence for each layer."""
+    wrong = [finding for finding in drawing_of(sheet, name, SNAP).findings if finding.severity == "error"]
+    for layer in dict.fromkeys(finding.layer for finding in wrong):
+        first = next(finding for finding in wrong if finding.layer == layer)
+        at = "" if first.x_mm is None else f" at ({first.x_mm:.3f}, {first.y_mm:.3f}) mm"
+        what = "cross itself" if first.code == "crossing" else "not be sound"
+        yield f"the outline of {name}, layer {layer}, would {what}{at}"
+
+
+# What is a design: dimensions, and how drawings and a scene follow from them?
+#
+# A design is declared in three steps:
+#
+#     @dataclass(frozen=True)
+#     class Pendulum:                                    # its values: one field per dimension, in the dimension's own unit
+#         length: float = dim(200.0, "mm", 10.0, 2000.0, "from the pivot to the middle of the bob", "chosen")
+#
+#     def draw(values: Pendulum) -> dict[str, Sheet]: ...     # file name without ending -> outlines, millimetres
+#     def scene(values: Pendulum) -> str: ...                 # commented TOML; `drawing = "bob.dxf"` names a sheet
+#     def conflicts(values: Pendulum) -> Iterator[Conflict]: ...  # what cannot be drawn or cannot work, and why
+#
+#     DESIGN = Design("pendulum", "Simple pendulum", Pendulum, draw, scene, conflicts)
+#
+# and named in construction/known.py. Limits of single dimensions are checked before `conflicts` is asked, and nothing is drawn
+# where either objects. Everything is a function of the values alone, so that equal values give equal bytes.
 
 Values = Any  # a frozen dataclass whose fields are declared with construction.dimension.dim
 

@@ -13,10 +13,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from watchsim.geometry.exact_angle import middle
-from watchsim.geometry.primitives import Edge, Line
+from watchsim.geometry.primitives import Edge, Line, middle
 from watchsim.jit import entry, kernel
-from watchsim.model.records import records
+from watchsim.model import records
 
 FLAT = 8.0  # an arc whose radius is larger than so many lengths gets its middle from exact arithmetic
 HALVINGS = 200

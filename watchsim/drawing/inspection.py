@@ -9,15 +9,14 @@ import math
 import re
 from collections.abc import Iterable, Sequence
 
-from watchsim.drawing.chaining.open_ends import shown
+from watchsim.drawing.chain_faults import shown
 from watchsim.drawing.circles import circle_lines, circle_reports
 from watchsim.drawing.drawing import Drawing
-from watchsim.drawing.drawn_material import layer_area, layer_roles, material_area
 from watchsim.drawing.findings import ORDER, Finding
-from watchsim.geometry.extent import Box, extents, total_length
-from watchsim.geometry.loop import Loop
+from watchsim.drawing.material import layer_area, layer_roles, material_area
+from watchsim.geometry.loops import Box, Loop, extents, total_length
 from watchsim.geometry.primitives import Arc, Point
-from watchsim.geometry.solids.mass import area
+from watchsim.geometry.solids import area
 
 TOLD = re.compile(r"\([-−]?\d[^()]*, [-−]?\d[^()]*\)")  # coordinates in a message
 FEW = 8  # points of a layer written out

@@ -13,14 +13,12 @@ from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
-from watchsim.drawing.chaining.chain import chain
-from watchsim.drawing.content import Content
+from watchsim.drawing.chaining import chain
+from watchsim.drawing.circles import facets
 from watchsim.drawing.drawing import Drawing
-from watchsim.drawing.dxf.dxf_file import read_dxf
-from watchsim.drawing.facets import facets
-from watchsim.drawing.findings import Finding
-from watchsim.geometry.extent import extents
-from watchsim.geometry.loop import Loop
+from watchsim.drawing.dxf import read_dxf
+from watchsim.drawing.findings import Content, Finding
+from watchsim.geometry.loops import Loop, extents
 from watchsim.units import metric
 
 SNAP = 1e-6
@@ -113,7 +111,7 @@ def content_of(data: bytes, ending: str, units: str | None, fit: float) -> Conte
     """What the reader for that ending and content finds in a file's bytes."""
     form = format_of(data, ending[:3])
     if form == "svg":
-        from watchsim.drawing.svg.svg_file import read_svg
+        from watchsim.drawing.svg import read_svg
 
         content = read_svg(data, units, fit)
     else:

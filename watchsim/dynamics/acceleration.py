@@ -6,15 +6,31 @@ and of bearings with dry friction (Pfeiffer & Glocker 1996, ch. 5; docs/theory/m
 
 from __future__ import annotations
 
-from watchsim.contact.index_sets import BACKWARD, FORWARD, OPEN, STICK
-from watchsim.dynamics.coulomb import add_element, fill_matrix, fill_rhs, read_forces
-from watchsim.dynamics.delassus import apply, fill_bearings, fill_delassus, inverse_mass, note_posed, own_acceleration
-from watchsim.dynamics.handedness import restore_directions, reverse_directions
-from watchsim.dynamics.jamming import is_paradox, press_unloaded
-from watchsim.dynamics.problem_kinds import Level, Rung
-from watchsim.dynamics.redundant_contacts import smallest_forces
-from watchsim.dynamics.small_systems import solve_small, unit_scale
-from watchsim.dynamics.solver_fallbacks import keep_basis, solve_contacts
+from watchsim.contact.gaps import BACKWARD, FORWARD, OPEN, STICK
+from watchsim.dynamics.delassus import (
+    apply,
+    fill_bearings,
+    fill_delassus,
+    inverse_mass,
+    note_posed,
+    own_acceleration,
+    smallest_forces,
+    solve_small,
+    unit_scale,
+)
+from watchsim.dynamics.friction import (
+    add_element,
+    fill_matrix,
+    fill_rhs,
+    is_paradox,
+    keep_basis,
+    press_unloaded,
+    read_forces,
+    restore_directions,
+    reverse_directions,
+    solve_contacts,
+)
+from watchsim.dynamics.lcp import Level, Solver
 from watchsim.jit import hot_kernel, kernel
 from watchsim.tolerances import ACCELERATION_ROUNDING, RANK
 
@@ -144,7 +160,7 @@ def decide_modes(model, closed, m, bearings, speed_zero, work, out_grip, out_mod
     pressed = press_unloaded(model, closed, m, work)
     note_posed(work, m, elements, bearings, Level.ACCELERATION)
     rung = solve_contacts(work, m, elements)
-    if rung == Rung.FAILED:
+    if rung == Solver.FAILED:
         restore_directions(work, rows, work.b)
         return False
     if pressed:

@@ -9,12 +9,20 @@ docs/theory/laws.md).
 from __future__ import annotations
 
 from watchsim.dynamics.acceleration import gap_accelerations
-from watchsim.dynamics.coulomb import add_element, element_row, fill_matrix, fill_rhs, read_forces
 from watchsim.dynamics.delassus import apply, contact_velocities, fill_delassus, inverse_mass, note_posed
-from watchsim.dynamics.expansion_friction import interval
-from watchsim.dynamics.handedness import restore_directions, reverse_directions
-from watchsim.dynamics.problem_kinds import Level, Rung
-from watchsim.dynamics.solver_fallbacks import keep_basis, solve_contacts
+from watchsim.dynamics.forces import interval
+from watchsim.dynamics.friction import (
+    add_element,
+    element_row,
+    fill_matrix,
+    fill_rhs,
+    keep_basis,
+    read_forces,
+    restore_directions,
+    reverse_directions,
+    solve_contacts,
+)
+from watchsim.dynamics.lcp import Level, Solver
 from watchsim.jit import kernel
 from watchsim.tolerances import NUDGE, PAINLEVE, PARALLEL, VELOCITY_ROUNDING
 
@@ -50,18 +58,18 @@ def _compress(model, closed, m, u, jam, work):
     contact_velocities(closed, m, u, work.b)
     _drop_rounding(closed, m, u, work.b)
     reverse_directions(work, m, 2 * m, elements, work.b)
-    _grip_more(m, jam, work)
+    raise_friction(m, jam, work)
     fill_matrix(work, m, elements)
     fill_rhs(work, m, elements, work.b)
-    nudged = _nudge(m, jam, work)
+    nudged = perturb_approach(m, jam, work)
     nudged = _keep_sliding(m, work) or nudged
     note_posed(work, m, elements, 0, Level.COMPRESSION)
     rung = solve_contacts(work, m, elements)
-    if nudged and rung != Rung.FAILED:
+    if nudged and rung != Solver.FAILED:
         fill_rhs(work, m, elements, work.b)
         keep_basis(work, m, elements, rung)
     read_forces(work, m, elements, work.force)
-    return rung != Rung.FAILED, elements
+    return rung != Solver.FAILED, elements
 
 
 @kernel
@@ -77,7 +85,7 @@ def _drop_rounding(closed, m, u, out_rates):
 
 
 @kernel
-def _grip_more(m, jam, work):
+def raise_friction(m, jam, work):
     """Let friction grip by as little more as takes contacts that count as jammed past the bound where they are.
 
     They count as jammed shortly before it (`PAINLEVE`), where a force still parts their bodies, by next to nothing.
@@ -90,7 +98,7 @@ def _grip_more(m, jam, work):
 
 
 @kernel
-def _nudge(m, jam, work):
+def perturb_approach(m, jam, work):
     """Let the contacts that slide at a standstill of their gap (|rate| <= `jam`) approach a little; True if there are any.
 
     The impulses of a jam do not vanish with the speed of approach; which contacts carry them is found this way.
@@ -166,7 +174,7 @@ def _expand(model, closed, m, restitution, elements, work):
         e = work.tangent[i]
         if e >= 0:
             work.more[2 * i + 1] += work.unit[i] * work.x[m + e] - work.drag[i] * extra
-    return rung != Rung.FAILED
+    return rung != Solver.FAILED
 
 
 @kernel
@@ -216,7 +224,7 @@ def plastic_impact(model, closed, m, time, u, work):
     rung = solve_contacts(work, m, elements)
     read_forces(work, m, elements, work.force)
     restore_directions(work, 2 * m, work.b)
-    return rung != Rung.FAILED
+    return rung != Solver.FAILED
 
 
 @kernel

@@ -3,16 +3,99 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from watchsim.escapement.by_hand.escapement_parts import Parts
-from watchsim.escapement.by_hand.hands import Array, Hands, Integers, Touch
-from watchsim.escapement.by_hand.lever_sweep import Rest
-from watchsim.escapement.quantity import Quantity, over_teeth, single
-from watchsim.escapement.tooth_passage import Passage, change_error
+from watchsim.escapement.by_hand import WIDTH, Array, Hands, Integers, Parts, Rest, Stretch, Touch
+
+# One measured number: its mean over the teeth, the tooth that is furthest from it, and how exact it is.
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """`value` (rad, or m) with its `error`; `worst` is the value of the tooth `tooth` that differs most.
+
+    Teeth are counted anticlockwise from 1, the one nearest to the wheel's own x axis, as in verdicts; None for what has nothing
+    to do with a tooth. A drop is that of the tooth let off. The error covers what the outlines leave open at their joints and
+    the width to which changes were halved; the drawing's own decimals come on top.
+    """
+
+    value: float
+    error: float
+    worst: float
+    tooth: int | None = None
+
+    @property
+    def spread(self) -> float:
+        """How far the worst tooth is from the mean."""
+        return abs(self.worst - self.value)
+
+
+def single(value: float, error: float) -> Quantity:
+    return Quantity(value, error, value)
+
+
+def over_teeth(values: Sequence[float], errors: Sequence[float], teeth: Sequence[int]) -> Quantity:
+    """The mean over the teeth; nan where there is none."""
+    if not values:
+        return Quantity(math.nan, math.nan, math.nan)
+    mean = float(np.mean(values))
+    worst = int(np.argmax(np.abs(np.asarray(values) - mean)))
+    return Quantity(mean, float(max(errors)), float(values[worst]), teeth[worst])
+
+
+# What is kept of one tooth on one stone: the places between which the angles of a beat are measured?
+
+
+@dataclass(frozen=True, slots=True)
+class Direct:
+    """The wheel meets the stone at `first` and lets go at `last`, the balance at `begin` and `end`; rad.
+
+    `error` is that of the balance's angles. In both rests, `slope` is the turn of the wheel by turn of the balance.
+    """
+
+    first: Rest
+    last: Rest
+    begin: float
+    end: float
+    error: float
+
+
+@dataclass(frozen=True, slots=True)
+class Passage:
+    """One tooth on one stone: the places between which its angles are measured. `end`: the other bank (rad).
+
+    `caught` is where the wheel, unlocked, has met the impulse stone, where it had to run after it; `direct` describes an
+    impulse on the balance itself, during which nothing drives the lever but its pin.
+    """
+
+    tooth: int
+    side: float
+    start: Rest
+    unlocked: Rest
+    let_off: Rest
+    landed: Rest
+    end: float
+    driven: tuple[Stretch, ...]
+    room: float
+    caught: Rest | None = None
+    direct: Direct | None = None
+
+
+class NotMeasured(Exception):
+    """The action does not get from bank to bank; the message says why."""
+
+
+def change_error(hands: Hands, parts: Parts, rest: Rest) -> float:
+    """Of the lever's angle at which a corner comes to the end of a face, rad: a contact counts a little beyond it."""
+    x, y = hands.pivot(parts.lever, hands.compiled.q)
+    # The corner slides at a third of the arm at least, unless draw or lift are steeper than any escapement's.
+    return WIDTH + 3.0 * (hands.room + hands.resolution) / math.hypot(rest.x - x, rest.y - y)
+
+
+# How do fork and pin play together: lift angle of the balance, shake of the pin, and where would the pin knock?
 
 STEP = math.radians(0.25)  # of the lever as the pin carries it
 BACK = math.radians(1.0)  # of the balance: a pin that has one wall only stands half as far from it
@@ -251,3 +334,95 @@ def _within(angle: float) -> float:
 def _turns(angle: float) -> float:
     """The same direction, a quarter of a turn or more away: a pin that knocks has gone most of the way round."""
     return (angle - 0.5 * math.pi) % math.tau + 0.5 * math.pi
+
+
+# Do dart and horns keep the lever on its bank wherever the balance stands with the pin outside the fork?
+#
+# The freedom of the lever is how far it can be turned off its bank before something stops it. As long as that is less than the
+# total lock, the tooth stays on the locking face and draw brings the lever back.
+
+SCAN = math.radians(1.0)  # of the balance
+FINE = 1e-9  # rad of the balance: the worst place is known to that
+GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
+FACES_CRESCENT = 1.5  # times the guard's freedom: the dart faces the crescent and the horns have to guard
+
+
+@dataclass(frozen=True, slots=True)
+class Safety:
+    """Freedoms of the lever, from one bank, rad; nan where nothing stops it or the scene has no such part.
+
+    guard   dart against safety roller, the pin opposite the fork
+    horn    horns against pin where the dart faces the crescent: the largest
+    worst   the largest over all places of the balance, at balance angle `worst_at` from rest; inf where the lever can cross
+    guard_clearance: from dart to roller on the bank, m
+    """
+
+    guard: Quantity
+    horn: Quantity
+    worst: Quantity
+    worst_at: float
+    guard_clearance: float
+
+
+def safety(balance: Balance, bank: float, side: float, entry: Entry) -> Safety | None:
+    """Of the lever on the bank of that side; None where the scene declares nothing besides the fork that could stop it."""
+    hands = balance.hands
+    far = balance.rest + math.pi
+    groups = np.array(hands.model.contacts.group)[balance.parts.to_balance]
+    stop = balance.lever(bank, far, -side)
+    if stop is None and not balance.parts.guarded:
+        return None
+    if stop is None:
+        never = single(math.inf, 0.0)
+        return Safety(never, single(math.nan, math.nan), never, math.pi, math.nan)
+    own = int(hands.model.contacts.group[stop.contact])
+    guarding, horns = balance.parts.to_balance[groups == own], balance.parts.to_balance[groups != own]
+
+    def freedom(theta: float, ids: Integers) -> float:
+        touch = balance.lever(bank, theta, -side, ids)
+        return math.inf if touch is None else abs(touch.angle - bank)
+
+    everything = balance.parts.to_balance
+    guard = abs(stop.angle - bank)
+    places = _outside(entry, far)
+    free = [freedom(theta, everything) for theta in places]
+    at, worst = _peak(lambda theta: freedom(theta, everything), places, free)
+    dart = [freedom(theta, guarding) for theta in places]
+    facing = [i for i, value in enumerate(dart) if value > FACES_CRESCENT * guard]
+    horn = math.nan
+    if facing and len(horns):
+        chosen = [places[i] for i in facing]
+        _, horn = _peak(lambda theta: freedom(theta, horns), chosen, [freedom(theta, horns) for theta in chosen])
+    met = hands.meeting(stop.contact, balance.at(stop.angle, far))
+    rate = met.rates[hands.body(balance.parts.lever)]
+    error = hands.error(rate)
+    return Safety(
+        single(guard, error),
+        single(horn, error),
+        single(worst, error),
+        (at - balance.rest + math.pi) % math.tau - math.pi,
+        hands.gap(stop.contact, balance.at(bank, far)),
+    )
+
+
+def _outside(entry: Entry, far: float) -> list[float]:
+    """Balance angles from opposite the fork up to where the pin comes in, and from there back to where it would knock."""
+    width = abs((entry.angle - far + math.pi) % math.tau - math.pi)
+    back = math.pi if entry.knock is None else abs(entry.knock - far)
+    count = int((width + back) / SCAN)
+    return [entry.angle - entry.way * (i * SCAN + FINE) for i in range(count)]
+
+
+def _peak(function: Callable[[float], float], places: list[float], values: list[float]) -> tuple[float, float]:
+    """Place and height of the largest value, by golden section between the neighbours of the highest place."""
+    i = max(range(len(values)), key=values.__getitem__)
+    if not math.isfinite(values[i]):
+        return places[i], values[i]
+    low, high = places[max(i - 1, 0)], places[min(i + 1, len(places) - 1)]
+    best = (places[i], values[i])
+    while abs(high - low) > FINE:
+        one, two = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
+        first, second = function(one), function(two)
+        best = max(best, (one, first), (two, second), key=lambda pair: pair[1])
+        low, high = (low, two) if first > second else (one, high)
+    return best

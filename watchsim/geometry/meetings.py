@@ -11,8 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.geometry.edge_table import Table
-from watchsim.geometry.near_edges import Floats, Ints
+from watchsim.geometry.loops import Floats, Ints, Table
 from watchsim.geometry.primitives import TURN
 
 Flags = NDArray[np.bool_]

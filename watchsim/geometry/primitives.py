@@ -1,13 +1,18 @@
-"""What is a line, what is an arc?
-
-Both are frozen records in metres and radians with a direction of travel. An outline is a sequence of them
-with the material on the left.
-"""
+"""Which boxes hold these points?"""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from decimal import Decimal, localcontext
+
+import numpy as np
+from numpy.typing import NDArray
+
+# What is a line, what is an arc?
+#
+# Both are frozen records in metres and radians with a direction of travel. An outline is a sequence of them
+# with the material on the left.
 
 Point = tuple[float, float]
 TURN = 2.0 * math.pi
@@ -125,3 +130,66 @@ def reflected(edge: Edge, foot: Point, direction: Point) -> Edge:
     if isinstance(edge, Line):
         return Line(*image(edge.x0, edge.y0), *image(edge.x1, edge.y1))
     return Arc(*image(edge.x, edge.y), edge.radius, 2.0 * math.atan2(uy, ux) - edge.start_angle, -edge.sweep)
+
+
+# What are the cosine and sine of an angle, to more digits than a float holds?
+#
+# A point on an arc whose radius is a million times its length keeps all its digits only so.
+
+DIGITS = 40
+QUARTER = Decimal("1.5707963267948966192313216916397514420985846996875529")
+
+
+def cos_sin(angle: Decimal) -> tuple[Decimal, Decimal]:
+    """Cosine and sine of `angle` (radians, up to some turns) to about 38 digits."""
+    with localcontext() as context:
+        context.prec = DIGITS
+        quarters = int((angle / QUARTER).to_integral_value())
+        rest = angle - quarters * QUARTER  # within an eighth of a turn either way
+        term, k = Decimal(1), 0
+        sums = [Decimal(0), Decimal(0)]
+        while abs(term) > Decimal(10) ** -DIGITS:
+            sums[k % 2] += -term if k % 4 >= 2 else term
+            k += 1
+            term *= rest / k
+        c, s = sums
+        return ((c, s), (-s, c), (-c, -s), (s, -c))[quarters % 4]
+
+
+def middle(edge: Arc, exact: bool) -> tuple[float, float, float, float]:
+    """Middle of the arc and the direction to it from the centre; `exact`: rounded once, however far the centre is."""
+    if not exact:
+        angle = edge.start_angle + 0.5 * edge.sweep
+        c, s = math.cos(angle), math.sin(angle)
+        return edge.x + edge.radius * c, edge.y + edge.radius * s, c, s
+    cosine, sine = cos_sin(Decimal(edge.start_angle) + Decimal(edge.sweep) / 2)
+    x, y, radius = Decimal(edge.x), Decimal(edge.y), Decimal(edge.radius)
+    return float(x + radius * cosine), float(y + radius * sine), float(cosine), float(sine)
+
+
+# Which boxes hold these points?
+
+FEW = 300  # up to that many, all pairs are compared; the library takes longer to load
+
+
+class Boxes:
+    """Boxes (m, 4), queried again and again."""
+
+    def __init__(self, boxes: NDArray[np.float64]) -> None:
+        self.boxes = boxes
+        if len(boxes) > FEW:
+            import shapely
+
+            self.tree = shapely.STRtree(shapely.box(*boxes.T))
+
+    def holding(self, points: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Numbers of points (n, 2) and of the boxes that hold them, one entry for each such pair."""
+        if len(self.boxes) <= FEW:
+            x, y = points[:, :1], points[:, 1:]
+            held = (self.boxes[:, 0] <= x) & (x <= self.boxes[:, 2]) & (self.boxes[:, 1] <= y) & (y <= self.boxes[:, 3])
+            point, box = np.nonzero(held)
+            return point, box
+        import shapely
+
+        found = self.tree.query(shapely.points(points))
+        return found[0], found[1]

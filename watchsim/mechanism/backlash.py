@@ -23,13 +23,11 @@ import math
 from dataclasses import replace
 from typing import NamedTuple
 
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import TURN, Arc, Line, Point
-from watchsim.scene.body import Body
-from watchsim.scene.carriers import Ride, rides
-from watchsim.scene.force import Contact, Side, Spring
-from watchsim.scene.gearing import Gear, Geared
-from watchsim.scene.scene import Scene
+from watchsim.scene.forces import Contact, Side, Spring
+from watchsim.scene.scene import Body, Gear, Geared, Scene
+from watchsim.scene.trains import Ride, rides
 
 LAYER, STOP = "gear", "stop"  # of both racks, in the names of contacts
 TOOTH = 0.1  # of the scene's size: radius of the tooth

@@ -8,22 +8,245 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from watchsim.candidates.cell_frame import angle_of, choose_frames
-from watchsim.candidates.cell_grid import choose_cells
+from watchsim.contact.cell_frames import angle_of, choose_frames
+from watchsim.contact.cells import choose_cells
 from watchsim.mechanism.backlash import with_racks
-from watchsim.mechanism.contact_features import features
-from watchsim.mechanism.coordinates import forced_coordinates
-from watchsim.mechanism.declared_pairs import declared_contacts, near_contacts
-from watchsim.model.records import BODY, MOTION_CODE, PRIMITIVE, Model, Records, frozen, records
-from watchsim.scene.body import Body
-from watchsim.scene.carriers import Ride, rides
-from watchsim.scene.force import Side
-from watchsim.scene.gear_trains import Bond, bonds
-from watchsim.scene.scene import Scene
-from watchsim.tolerances import CLEARANCE
+from watchsim.mechanism.contacts import coordinates_of_lines, declared_contacts, features, line_springs, near_contacts
+from watchsim.model import (
+    BODY,
+    CONSTANT,
+    COORDINATE,
+    FREE,
+    JOINT,
+    MOTION_CODE,
+    OVER_ANGLE,
+    OVER_TIME,
+    PIVOT,
+    PRIMITIVE,
+    REPEATED,
+    SLIDE,
+    TABLE,
+    Model,
+    Records,
+    frozen,
+    records,
+)
+from watchsim.scene.forces import Side, Torque
+from watchsim.scene.roles import oscillators
+from watchsim.scene.scene import Body, Scene
+from watchsim.scene.trains import Bond, Ride, Weighed, bonds, felt, rides, weigh
+from watchsim.tolerances import CLEARANCE, SPRING_AT_REST
+
+# What are the coordinates of a model, how heavy are they, and what acts on them besides contacts?
+
+OVER = {"constant": CONSTANT, "angle": OVER_ANGLE, "time": OVER_TIME}
+
+
+@dataclass(frozen=True)
+class Forced:
+    """Coordinates, joints, line springs, force tables and their knots, in the model's order; the largest natural frequency."""
+
+    parts: tuple[Records, Records, Records, Records, np.ndarray]
+    fastest: float
+
+
+class _Targets:
+    """On which record does a spring, torque or damper act: its body's coordinate, or the joint with another body?"""
+
+    def __init__(
+        self, scene: Scene, hung: tuple[Ride, ...], bound: tuple[Bond, ...], slices: dict[str, slice], rows: Records
+    ) -> None:
+        self.scene, self.slices, self.rows = scene, slices, rows
+        self._hung = {body.name: ride for body, ride in zip(scene.bodies, hung, strict=True)}
+        self.bonds = {body.name: bond for body, bond in zip(scene.bodies, bound, strict=True)}
+        acting: list[tuple[str, str | None]] = [(one.body, None) for one in oscillators(scene)]
+        for forces in (scene.springs, scene.torques, scene.damping):
+            acting += [(one.body, one.against) for one in forces]
+        other = {ends: number for ends in dict.fromkeys(acting) if (number := self._other(*ends)) >= 0}
+        self.joints = records(JOINT, len(other))
+        self._joint = dict(zip(other, self.joints, strict=True))
+        for (name, against), joint in self._joint.items():
+            joint.coordinate, joint.on, joint.watched = self.number(name), other[name, against], 0
+
+    def _other(self, name: str, against: str | None) -> int:
+        """The coordinate of the other end, -1 where there is none."""
+        if against is not None:
+            return self.number(against)
+        carrier = self._hung[name].turns_with
+        return self.number(self.scene.bodies[carrier].name) if carrier >= 0 and self.scene.body(name).geared is None else -1
+
+    def number(self, name: str) -> int:
+        """The coordinate: a body's angle, or a sliding body's travel; of the body that it is geared to."""
+        body = self._holder(name)
+        part = self.slices[body.name]
+        return part.stop - 1 if body.motion == "free" else part.start
+
+    def _holder(self, name: str) -> Body:
+        return self.scene.bodies[self.bonds[name].to]
+
+    def on(self, name: str, against: str | None = None) -> int:
+        """The coordinate of the other end, such as the angle of its carrier; -1 for none."""
+        return int(self._joint[name, against].on) if (name, against) in self._joint else -1
+
+    def row(self, name: str, against: str | None = None) -> Any:
+        return self._joint[name, against] if (name, against) in self._joint else self.rows[self.number(name)]
+
+    def ratio(self, name: str) -> float:
+        """How far the body goes, as the scene gives it, for one unit of the coordinate."""
+        return self.bonds[name].told
+
+    def place(self, name: str, value: float, against: str | None = None) -> float:
+        """The coordinate, or the difference of the two, at which the scene gives the body this angle or travel."""
+        bond = self.bonds[name]
+        away = self._offset(against) if against is not None else 0.0
+        return (value - bond.shift) / bond.told + self._offset(self._holder(name).name) - away
+
+    def _offset(self, name: str) -> float:
+        """From an angle as the scene gives it to the coordinate, or to the difference of the two."""
+        return self._hung[name].angle if self.scene.body(name).motion == "pivot" else 0.0
+
+
+def forced_coordinates(
+    scene: Scene, hung: tuple[Ride, ...], bound: tuple[Bond, ...], slices: dict[str, slice], size: float
+) -> Forced:
+    """Coordinates with their forces; joints; force tables and their knots.
+
+    What acts on a geared body acts on the coordinate of the one it is geared to, with its ratio as lever arm.
+    """
+    count = sum(part.stop - part.start for part in slices.values())
+    rows = records(COORDINATE, count)
+    weighed = weigh(scene.bodies, hung)
+    masses = felt(scene.bodies, hung, weighed)
+    for i, body in enumerate(scene.bodies):
+        if body.name in slices:
+            _inertias(scene, body, i, weighed[i], hung[i], rows[slices[body.name]], size)
+            if any(bond.to == i != k for k, bond in enumerate(bound)) and body.prescribed is None:
+                rows[slices[body.name]].mass = masses[i]
+    targets = _Targets(scene, hung, bound, slices, rows)
+    _weigh_geared(scene, weighed, targets)
+    for spring in scene.springs:
+        row = targets.row(spring.body, spring.against)
+        # Several springs on one coordinate add up to one: stiffnesses add, rests average.
+        stiffness = spring.stiffness * targets.ratio(spring.body) ** 2
+        total = row.stiffness + stiffness
+        rest = targets.place(spring.body, spring.rest, spring.against)
+        row.rest = (row.stiffness * row.rest + stiffness * rest) / total
+        row.stiffness = total
+    stiffest = _watch(scene, targets)
+    for damping in scene.damping:
+        row, ratio = targets.row(damping.body, damping.against), abs(targets.ratio(damping.body))
+        row.viscous += ratio**2 * damping.viscous
+        row.quadratic += ratio**3 * damping.quadratic
+        row.coulomb += ratio * damping.coulomb
+    tables, knots = _tables(scene, targets)
+    joints = targets.joints
+    if joints.coulomb.any():
+        raise ValueError("dry friction between two bodies that turn is not simulated")
+    # A spring's force vanishes at its rest, but for the rounding of the place there.
+    at_rest = SPRING_AT_REST * rows.stiffness * rows.scale
+    rows.load = np.abs(rows.force) + np.hypot(rows.weight_x, rows.weight_y) + at_rest
+    tabled = {int(table.coordinate) for table in tables}
+    lines = line_springs(scene)
+    held = coordinates_of_lines(scene, lines, slices, bound)
+    jointed = {*joints.coordinate.tolist(), *joints.on.tolist(), *(k for k, _ in held)}
+    for i, row in enumerate(rows):
+        row.linear = row.quadratic == 0.0 and row.weight_x == 0.0 and row.weight_y == 0.0 and i not in tabled | jointed
+    inverse = np.where(rows.driven != 0, 0.0, 1.0 / rows.mass)
+    light = 1.0 / (inverse[joints.coordinate] + inverse[joints.on])
+    fastest = float(
+        np.sqrt(
+            np.max(
+                [*(rows.stiffness / rows.mass), stiffest, *(joints.stiffness / light), *(k / rows.mass[i] for i, k in held)],
+                initial=0.0,
+            )
+        )
+    )
+    push = [*(np.abs(rows.force) / (rows.mass * rows.scale)), *(np.abs(joints.force) / light)]
+    rows.rate = fastest or float(np.sqrt(np.max(push, initial=0.0))) or 1.0
+    return Forced((rows, joints, lines, tables, knots), fastest)
+
+
+def _watch(scene: Scene, targets: _Targets) -> float:
+    """Marks the coordinates that swing, with their rest positions; returns the largest stiffness over inertia among them."""
+    largest = 0.0
+    for one in oscillators(scene):
+        if targets.on(one.body) < 0:
+            row = targets.row(one.body)
+            plain = one.weight == 0.0 and scene.body(one.body).motion == "pivot"
+            row.watched, row.level = 1, row.rest if plain else targets.place(one.body, one.rest)
+            largest = max(largest, (one.spring + one.weight) / one.inertia)
+        else:
+            targets.row(one.body).watched = 1
+    return largest
+
+
+def _inertias(scene: Scene, body: Body, number: int, weighed: Weighed, ride: Ride, rows: Records, size: float) -> None:
+    """Masses, scales and gravity of one body's coordinates, with all that it carries."""
+    gx, gy = scene.gravity
+    rows.body = number
+    motion = MOTION_CODE[body.motion]
+    if body.prescribed is not None:
+        rows.mass, rows.driven, rows.scale = 1.0, 1, 1.0 if motion == PIVOT else size
+        rows.stiffness, rows.rest = body.prescribed.square, body.prescribed.middle
+    elif motion == PIVOT:
+        rows.mass, rows.scale = weighed.inertia, 1.0
+        if ride.host < 0:  # a carried body is poised
+            sx, sy = weighed.moment
+            rows.weight_x, rows.weight_y = sx * gx + sy * gy, sx * gy - sy * gx
+    elif motion == SLIDE:
+        rows.mass, rows.scale = weighed.mass, size
+        rows.force = weighed.mass * (gx * body.axis[0] + gy * body.axis[1])
+    elif motion == FREE:
+        rows.mass, rows.scale = (weighed.mass, weighed.mass, weighed.inertia), (size, size, 1.0)
+        rows.force = (weighed.mass * gx, weighed.mass * gy, 0.0)
+
+
+def _weigh_geared(scene: Scene, weighed: tuple[Weighed, ...], targets: _Targets) -> None:
+    """Gravity on a sliding body that is geared to another; a geared one that turns is poised."""
+    gx, gy = scene.gravity
+    for body, load in zip(scene.bodies, weighed, strict=True):
+        if body.geared is not None and body.motion == "slide" and scene.body(body.geared.to).prescribed is None:
+            pull = load.mass * (gx * body.axis[0] + gy * body.axis[1])
+            targets.row(body.name).force += targets.ratio(body.name) * pull
+
+
+def _tables(scene: Scene, targets: _Targets) -> tuple[Records, np.ndarray]:
+    """Constant torques go into the coordinates, the others into tables."""
+    tabled: list[Torque] = []
+    for torque in scene.torques:
+        if torque.over == "constant":
+            targets.row(torque.body, torque.against).force += targets.ratio(torque.body) * torque.value
+        else:
+            tabled.append(torque)
+    paths = [body for body in scene.bodies if body.prescribed is not None and body.prescribed.table]
+    tables = records(TABLE, len(tabled) + len(paths))
+    knots: list[tuple[float, float]] = []
+    for row, torque in zip(tables, tabled, strict=False):
+        row.coordinate, row.on, row.over = (
+            targets.number(torque.body),
+            targets.on(torque.body, torque.against),
+            OVER[torque.over] if torque.period is None else REPEATED,
+        )
+        row.start, row.count = len(knots), len(torque.table)
+        over_angle, ratio = torque.over == "angle", targets.ratio(torque.body)
+        knots.extend(
+            sorted(
+                (targets.place(torque.body, x, torque.against) if over_angle else x, ratio * value) for x, value in torque.table
+            )
+        )
+    for row, body in zip(tables[len(tabled) :], paths, strict=True):
+        assert body.prescribed is not None
+        row.coordinate, row.on, row.over = targets.slices[body.name].start, -1, OVER_TIME
+        row.start, row.count = len(knots), len(body.prescribed.table)
+        knots.extend(body.prescribed.table)
+    return tables, np.array(knots, float).reshape(len(knots), 2)
+
+
+# How does a scene become a model?
 
 
 @dataclass(frozen=True)

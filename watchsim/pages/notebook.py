@@ -1,29 +1,128 @@
-"""What do values show of themselves in a notebook? A few lines and a small picture, in 30 kB at most."""
+"""How is a run played inside a notebook?
+
+The page of `report` without its sheet and its files, in a frame of its own that may run its scripts and nothing else.
+"""
 
 from __future__ import annotations
 
 import io
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
-from watchsim.analysis.timing.averages import averages, last_window
-from watchsim.analysis.timing.beats import Beats, beats
+from watchsim.analysis.timing import Beats, averages, beats, last_window
 from watchsim.mechanism.compile import compile_scene
-from watchsim.pages.card import card, image
 from watchsim.pages.charts import scatter
-from watchsim.pages.html import Markup
-from watchsim.pages.player.stretch_shown import shown
-from watchsim.pages.study_cards import cycle_html as cycle_html
-from watchsim.pages.study_cards import sensitivity_html as sensitivity_html
-from watchsim.pages.study_cards import sweep_html as sweep_html
-from watchsim.pages.timing_sheet.timekeeping import both_ways, with_error
-from watchsim.render.frame.pose_history import Window, poses
-from watchsim.render.frame.stage import Stage
-from watchsim.render.stills.still import at_rest
-from watchsim.scene.oscillation import frequency
-from watchsim.scene.roles import swings
+from watchsim.pages.html import Markup, card, element, image, table
+from watchsim.pages.player import shown
+from watchsim.pages.report_page import player_text
+from watchsim.pages.timing_sheet import both_ways, with_error
+from watchsim.render.stage import Stage
+from watchsim.render.still import at_rest
+from watchsim.render.view import Window, poses
+from watchsim.scene.roles import frequency, swings
 from watchsim.scene.scene import Scene
-from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.simulation.trajectory import Trajectory
+from watchsim.studies.axes import Axis
+from watchsim.studies.cycle import Cycle
+from watchsim.studies.point import Output
+from watchsim.studies.sensitivity import Sensitivity
+from watchsim.studies.sweep import Sweep
+from watchsim.units import to
+
+# What do limit cycles, sweeps and sensitivities show of themselves in a notebook?
+
+ROWS = 12  # of a table; the rest is counted
+DOTS_STUDY_CARDS, SHOWN = 560, 420  # of a picture, and how wide it is shown
+PRINTED = 85.0  # mm, for which the letters are large enough
+
+
+def cycle_html(cycle: Cycle) -> str:
+    """Verdict, amplitude, rate, beat error and stability."""
+    values = (
+        ("amplitude", cycle.amplitude_deg, cycle.amplitude_deg_error, "°"),
+        ("rate", cycle.rate_s_per_d, cycle.rate_s_per_d_error, " s/d"),
+        ("beat error", cycle.beat_error_ms, cycle.beat_error_ms_error, " ms"),
+    )
+    told = [(name, *with_error(value, error, unit)) for name, value, error, unit in values if value is not None]
+    lines = [" ".join(filter(None, parts)) for parts in told]
+    if cycle.multipliers:
+        lines.append(f"multiplier {', '.join(f'{value:.4g}' for value in cycle.multipliers)}")
+    return card("Limit cycle" if cycle.found else f"No limit cycle: {cycle.verdict}", [*lines, cycle.message])
+
+
+def sweep_html(sweep: Sweep) -> str:
+    """The first rows as a table, and the plot."""
+    from watchsim.render.study_plot import plot_sweep
+    from watchsim.render.style import small_png
+
+    count = len(sweep.rows)
+    lines = [f"{count} {'point' if count == 1 else 'points'}", "" if sweep.whole else "interrupted: points are missing"]
+    if not count:
+        return card(f"Sweep of {sweep.title}", lines)
+    head = [*map(_name, sweep.axes), *map(_heading, sweep.outputs), "verdict"]
+    rows = [
+        [
+            *(_value(axis, row) for axis in sweep.axes),
+            *(_number(row[one.column]) for one in sweep.outputs),
+            row["verdict"] or "",
+        ]
+        for row in sweep.rows[:ROWS]
+    ]
+    shown = table(head, rows, f"the first {ROWS} of {count} points" if count > ROWS else "")
+    try:
+        figure = plot_sweep(sweep, PRINTED)
+    except ValueError:  # keys without numbers
+        return card(f"Sweep of {sweep.title}", lines, shown)
+    return card(
+        f"Sweep of {sweep.title}",
+        lines,
+        shown,
+        element("div", image(small_png(figure, DOTS_STUDY_CARDS), "The sweep as curves", SHOWN)),
+    )
+
+
+def sensitivity_html(found: Sensitivity) -> str:
+    """What matters most, and the plot."""
+    from watchsim.render.study_plot import plot_sensitivity
+    from watchsim.render.style import small_png
+
+    count, outputs = len(found.effects), found.outputs
+    lines = [f"{count} {'quantity' if count == 1 else 'quantities'}", "" if found.whole else "interrupted: some are missing"]
+    if not count:
+        return card(f"What matters in {found.title}", lines)
+    head = ["change", *map(_heading, found.outputs)]
+    rows = [
+        [f"{one.quantity.key} +{one.quantity.change_words}", *(_number(one.of(o.column, one.quantity.change)) for o in outputs)]
+        for one in found.effects[:ROWS]
+    ]
+    shown = table(head, rows, f"the first {ROWS} of {count} quantities" if count > ROWS else "")
+    bars = small_png(plot_sensitivity(found, PRINTED), DOTS_STUDY_CARDS)
+    return card(f"What matters in {found.title}", lines, shown, element("div", image(bars, "Effects as bars", SHOWN)))
+
+
+def _heading(output: Output) -> str:
+    return f"{output.label} ({output.unit})" if output.unit else output.label
+
+
+def _name(axis: Axis) -> str:
+    return f"{axis.key} ({axis.usual})" if axis.usual else axis.key
+
+
+def _value(axis: Axis, row: Any) -> str:
+    value = row[axis.key]
+    if isinstance(value, str):
+        return value
+    return f"{to(value, axis.usual) if axis.usual else value:.6g}".replace("-", "−")
+
+
+def _number(value: float | None) -> str:
+    return "" if value is None else f"{value:.5g}".replace("-", "−")
+
+
+# What do values show of themselves in a notebook? A few lines and a small picture, in 30 kB at most.
 
 SIZE = (560, 315)
 COLOURS = 40  # of a picture: a palette makes it small
@@ -100,3 +199,38 @@ def _picture(run: Trajectory, window: Window, t: float) -> Markup | None:
     out = io.BytesIO()
     Image.fromarray(np.ascontiguousarray(pixels)).quantize(COLOURS).save(out, "PNG", optimize=True)
     return image(out.getvalue(), f"The mechanism at {t:g} s", SIZE[0] // 4 * 3)
+
+
+# How is a run played inside a notebook?
+
+HEIGHT = 640  # dots: picture, buttons, and the first plot
+
+
+@dataclass(frozen=True)
+class Player:
+    """A page that plays, as text, and how high it is shown (dots)."""
+
+    title: str
+    page: str = field(repr=False)
+    height: int = HEIGHT
+
+    def __repr__(self) -> str:
+        return f"<Player of {self.title!r}: {len(self.page.encode()) / 1e3:.0f} kB>"
+
+    def _repr_html_(self) -> str:
+        return element(
+            "iframe",
+            srcdoc=self.page,
+            sandbox="allow-scripts allow-downloads",
+            title=f"Player of {self.title}",
+            loading="lazy",
+            style=f"width:100%;height:{self.height}px;border:0",
+        )
+
+
+def show(run: Trajectory, window: Sequence[float] | None = None, *, height: int = HEIGHT) -> Player:
+    """A player that a notebook shows under its cell: the last beats, or a window (s) of the run.
+
+    ValueError for a window that was not recorded, or that holds too much motion for a page.
+    """
+    return Player(run.scene.title, player_text(run, window), height)

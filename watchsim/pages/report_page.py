@@ -10,20 +10,15 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from watchsim.analysis.phases import Phase, phases_within
 from watchsim.analysis.summary import summary
-from watchsim.analysis.timing.phases import Phase, phases_within
-from watchsim.pages.files import packed_files
-from watchsim.pages.html import Markup, element, joined
-from watchsim.pages.player.canvas_outlines import drawn_parts
-from watchsim.pages.player.data import picture_size, player_data
-from watchsim.pages.player.motion import Channel, TooMuch, channels
-from watchsim.pages.player.stretch_shown import shown
-from watchsim.pages.poster import poster
-from watchsim.pages.self_contained_page import page
-from watchsim.pages.timing_sheet.timing_sheet import sheet, verdict
-from watchsim.render.frame.pose_history import Window, recorded
+from watchsim.pages.charts import poster
+from watchsim.pages.html import Markup, element, joined, packed_files, page
+from watchsim.pages.player import Channel, TooMuch, channels, drawn_parts, picture_size, player_data, shown
+from watchsim.pages.timing_sheet import sheet, verdict
+from watchsim.render.view import Window, recorded
 from watchsim.results.tables import plain
-from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.simulation.trajectory import Trajectory
 from watchsim.storage.write import write_file
 
 ENDINGS = (".html", ".htm")

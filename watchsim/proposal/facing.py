@@ -1,8 +1,4 @@
-"""Which surfaces face which?
-
-Layers of two bodies that come within reach of each other as the bodies turn: wheels and balances all the way, levers a
-little. What lies over each other in the drawing lies at different heights and cannot meet.
-"""
+"""How far apart is what can meet, at given angles of the bodies?"""
 
 from __future__ import annotations
 
@@ -14,10 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.geometry.primitives import Point
-from watchsim.mechanism.material_polygons import material, placed
-from watchsim.proposal.bodies.part_names import CLICK, DRIVER, FIXED, LEVER, OSCILLATOR, WHEEL, facing_by_name
-from watchsim.proposal.bodies.part_roles import Role
-from watchsim.proposal.bodies.piece import Piece, Region
+from watchsim.mechanism.overlap import material, placed
+from watchsim.proposal.pieces import CLICK, DRIVER, FIXED, LEVER, OSCILLATOR, WHEEL, Piece, Region, facing_by_name
+from watchsim.proposal.roles import Role
+
+# Which surfaces face which?
+#
+# Layers of two bodies that come within reach of each other as the bodies turn: wheels and balances all the way, levers a
+# little. What lies over each other in the drawing lies at different heights and cannot meet.
 
 Floats = NDArray[np.float64]
 SWING = math.radians(15.0)  # of a lever or click, to either side
@@ -170,3 +170,37 @@ def _ring_of(points: Floats, centre: Point) -> tuple[float, float]:
     share = np.clip(-(start * step).sum(axis=1) / length, 0.0, 1.0)
     nearest = np.hypot(*(start + share[:, None] * step).T).min()
     return float(nearest), float(np.hypot(*(points - np.array(centre)).T).max())
+
+
+# How far apart is what can meet, at given angles of the bodies?
+
+
+def overlaps(facings: Sequence[Facing], angles: dict[str, float]) -> bool:
+    return clearance(facings, angles) <= 0.0
+
+
+def clearance(facings: Sequence[Facing], angles: dict[str, float]) -> float:
+    """The least distance of what can meet, m; 0 where something overlaps."""
+    least = math.inf
+    for facing in facings:
+        first = [
+            _turned(facing.first, piece, angles) for piece in facing.first.part.pieces if piece.layer == facing.first_layer
+        ]
+        second = [
+            _turned(facing.second, piece, angles) for piece in facing.second.part.pieces if piece.layer == facing.second_layer
+        ]
+        least = min([least, *(float(p.distance(q)) for p in first for q in second)])
+        if least <= 0.0:
+            break
+    return least
+
+
+def _turned(role: Role, piece: Piece, angles: dict[str, float]) -> Region:
+    angle = angles.get(role.name, 0.0)
+    if angle == 0.0 or role.part.centre is None:
+        return piece.region
+    parts = material([(about(points, role.part.centre.at, angle), hole) for points, hole in piece.rings])
+    whole = parts[0]
+    for part in parts[1:]:
+        whole = whole.union(part)
+    return whole

@@ -7,17 +7,315 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections import Counter
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from watchsim.proposal.bodies.part_names import CLICK, LEVER, OSCILLATOR, WHEEL
-from watchsim.proposal.bodies.part_roles import Role
-from watchsim.proposal.bodies.piece import Piece
-from watchsim.proposal.clearance import clearance, overlaps
-from watchsim.proposal.facing import Facing, turns_fully
-from watchsim.proposal.locked import locked
+from watchsim.drawing.write import dxf_text
+from watchsim.geometry.primitives import Point
+from watchsim.geometry.solids import section
+from watchsim.proposal.facing import Facing, clearance, overlaps, turns_fully
+from watchsim.proposal.parts import Part, nose_of, toothing
+from watchsim.proposal.pieces import CLICK, DRIVER, LEVER, OSCILLATOR, WHEEL, Piece, Source, tokens
+from watchsim.proposal.roles import Role, plain
+
+# Which inertias, frequencies and torques are likely, where a drawing can say none?
+#
+# Plates of steel, a balance as usual for the size, and a torque that makes up for what the oscillator loses in a beat.
+
+STEEL = 7850.0  # kg/m³
+WATCH = 40e-3  # m: what is larger is a clock
+THICKNESS = {True: 0.2e-3, False: 2e-3}  # m, of the parts of a watch, of a clock
+BALANCE = 1.2e-9  # kg·m²: 12 mg·cm², usual for a wristwatch
+BEATS = {True: 28800.0, False: 7200.0}  # vph
+Q_FACTOR = {True: 250.0, False: 1000.0}
+SHARE = 0.35  # of the drive's work that reaches the oscillator: usual for a lever escapement
+LIGHT = 30.0  # times the lever's inertia: a balance with less is drawn without its rim
+HEAVY = 100.0  # times the wheel's inertia: an anchor with less is drawn without its pendulum
+STEPPED = 8  # teeth: a wheel with fewer is driven step by step, as in a Geneva drive
+LIFTING = 0.2  # of the drive's work that lifts a click
+BENT = 0.5  # rad by which the spring of a click is bent at the start: its force hardly changes
+TURNS = 1.0  # per second, of what has nothing to hold it back but damping
+
+
+@dataclass(frozen=True)
+class Amount:
+    """A number in SI units and why."""
+
+    value: float
+    why: str
+
+
+@dataclass(frozen=True)
+class ClickSpring:
+    """What presses a click into the teeth: stiffness in N·m/rad, and the way (rad) from its start to its rest."""
+
+    body: str
+    stiffness: Amount
+    way: float
+
+
+@dataclass(frozen=True)
+class Amounts:
+    inertia: dict[str, Amount]
+    vph: Amount | None
+    q_factor: Amount | None
+    torque: Amount | None
+    viscous: Amount | None
+    driven: str | None  # the body that the torque turns
+    clicks: tuple[ClickSpring, ...] = ()
+    turned: str | None = None  # the body that turns evenly, as a finger does that moves a star on against its jumper
+
+
+def amounts_of(roles: Sequence[Role], size: float, swing: float) -> Amounts:
+    """Inertias of all that moves, and what drives it."""
+    watch = size < WATCH
+    thick = THICKNESS[watch]
+    plate = f"its outlines as steel {1e3 * thick:g} mm thick"
+    inertia = {role.name: Amount(_plate(role.part, thick), plate) for role in roles if role.moves}
+    wheel = next((role for role in roles if role.task == WHEEL), None)
+    lever = next((role for role in roles if role.task == LEVER), None)
+    swinging = next((role for role in roles if role.task == OSCILLATOR), None)
+    if swinging is not None:
+        inertia[swinging.name] = _oscillators(inertia, swinging, lever, wheel)
+    driven = _driven(roles, wheel, swinging)
+    clicks = any(role.task == CLICK for role in roles)
+    turned = driven if clicks and any(role.task == DRIVER and role.name == driven for role in roles) else None
+    if swinging is None:
+        torque = Amount(1e-6 if watch else 1e-4, "nothing in the drawing says how strong the drive is")
+        slow = Amount(torque.value / (2.0 * math.pi * TURNS), f"so that {driven} comes to about {TURNS:g} turn per second")
+        return Amounts(
+            inertia,
+            None,
+            None,
+            torque if driven else None,
+            slow if driven else None,
+            driven,
+            _clicks(roles, wheel, torque.value),
+            turned,
+        )
+    beats = Amount(BEATS[watch], f"usual for {'a watch' if watch else 'a clock'} of this size ({1e3 * size:.3g} mm)")
+    q = Amount(Q_FACTOR[watch], "usual; the escapement's own losses come on top")
+    torque_amount = None
+    if wheel is not None and wheel.teeth:
+        omega = 2.0 * math.pi * beats.value / 7200.0
+        loss = math.pi * inertia[swinging.name].value * (omega * swing) ** 2 / q.value
+        value = loss / (SHARE * 2.0 * math.pi / wheel.teeth)
+        why = f"it makes up for what the {swinging.name} loses at {math.degrees(swing):.3g}°, {SHARE:.0%} of it reaching it"
+        torque_amount = Amount(value, why)
+    return Amounts(inertia, beats, q, torque_amount, None, driven)
+
+
+def _clicks(roles: Sequence[Role], wheel: Role | None, torque: float) -> tuple[ClickSpring, ...]:
+    """Springs so strong that lifting the click over a tooth takes a share of the drive's work."""
+    found = []
+    for role in roles:
+        teeth = toothing(wheel.part) if wheel is not None else None
+        if role.task != CLICK or wheel is None or teeth is None:
+            continue
+        nose = nose_of(role.part, wheel.part)
+        lift = (teeth.outer - teeth.inner) / nose.arm  # rad, about
+        bent = max(BENT, 2.0 * lift)
+        moment = LIFTING * torque * 2.0 * math.pi / teeth.fold / lift
+        why = f"lifting it over a tooth takes about {LIFTING:.0%} of the drive's work"
+        found.append(ClickSpring(role.name, Amount(moment / bent, why), nose.inward * bent))
+    return tuple(found)
+
+
+def _plate(part: Part, thickness: float) -> float:
+    centre: Point = part.centre.at if part.centre is not None else (0.0, 0.0)
+    return sum(abs(section(piece.loops).about(centre).polar) for piece in part.pieces) * thickness * STEEL
+
+
+def _oscillators(inertia: dict[str, Amount], swinging: Role, lever: Role | None, wheel: Role | None) -> Amount:
+    own = inertia[swinging.name]
+    if lever is not None and own.value < LIGHT * inertia[lever.name].value:
+        return Amount(
+            max(BALANCE, LIGHT * inertia[lever.name].value), "a balance's; what is drawn is too light to be all of it"
+        )
+    if lever is None and wheel is not None and own.value < HEAVY * inertia[wheel.name].value:
+        return Amount(
+            HEAVY * inertia[wheel.name].value, "with its pendulum or balance; what is drawn is too light to be all of it"
+        )
+    return own
+
+
+def _driven(roles: Sequence[Role], wheel: Role | None, swinging: Role | None) -> str | None:
+    driver = next((role for role in roles if role.task == DRIVER), None)
+    if driver is not None and (wheel is None or wheel.teeth < STEPPED):
+        return driver.name
+    if wheel is not None:
+        return wheel.name
+    return next((role.name for role in roles if role.moves and role is not swinging), None)
+
+
+# Where do lever and wheel stand when a watch waits to be unlocked?
+
+FINE = 96  # steps of a pitch, and of the way to a bank
+MOST_BANK, USUAL_BANK = math.radians(20.0), math.radians(5.0)
+BACK = math.radians(0.1)  # short of touching
+
+
+def locked(
+    roles: Sequence[Role], facings: Sequence[Facing], angles: dict[str, float], direction: int
+) -> tuple[dict[str, float], dict[str, str]] | None:
+    """The lever turned to its bank, on the side from which the pin comes, and the wheel on until a tooth is at a stone.
+
+    Of an anchor that swings itself the wheel alone is turned on. None where there is no such place.
+    """
+    wheel = next((role for role in roles if role.task == WHEEL and role.teeth), None)
+    levers = [role for role in roles if role.task == LEVER]
+    swinging = next((role for role in roles if role.task == OSCILLATOR), None)
+    if wheel is None or swinging is None:
+        return None
+    why = {}
+    if turns_fully(swinging):
+        if not levers:
+            return None
+        lever = levers[0]
+        still = [f for f in facings if lever in (f.first, f.second) and not (f.first.moves and f.second.moves)]
+        reach = _first_touch(lambda angle: clearance(still, {**angles, lever.name: angle}), MOST_BANK) if still else USUAL_BANK
+        angles = {**angles, lever.name: max(reach - BACK, 0.0)}
+        why[lever.name] = "just before its bank, on the side from which the pin comes" if still else "as if at its bank"
+    own = [f for f in facings if wheel in (f.first, f.second)]
+    free = _free_way(lambda angle: clearance(own, {**angles, wheel.name: direction * angle}), 2.0 * math.pi / wheel.teeth)
+    if free is None:
+        return None
+    angles = {**angles, wheel.name: direction * free}
+    why[wheel.name] = "turned on, the way it is driven, until a tooth is just before a surface that stops it"
+    return angles, why
+
+
+def _first_touch(open_at: Callable[[float], float], most: float) -> float:
+    """The angle, from 0 on, at which there is no clearance any more, at most `most`."""
+    steps = np.linspace(0.0, most, FINE + 1).tolist()
+    for before, angle in itertools.pairwise(steps):
+        if open_at(angle) <= 0.0:
+            return _edge(open_at, before, angle)
+    return most
+
+
+def _free_way(open_at: Callable[[float], float], pitch: float) -> float | None:
+    """The end, in the driven direction, of the widest stretch of angles within a pitch where there is clearance."""
+    step = pitch / FINE
+    free = [open_at(k * step) > 0.0 for k in range(FINE)]
+    if all(free) or not any(free):
+        return 0.0 if all(free) else None
+    ends = [k for k in range(FINE) if free[k] and not free[(k + 1) % FINE]]
+    longest = max(ends, key=lambda k: next(n for n in range(1, FINE + 1) if not free[(k - n) % FINE]))
+    return max(_edge(open_at, longest * step, (longest + 1) * step) - BACK, longest * step - step)
+
+
+def _edge(open_at: Callable[[float], float], free: float, blocked: float) -> float:
+    while abs(blocked - free) > 0.1 * BACK:
+        middle = 0.5 * (free + blocked)
+        free, blocked = (middle, blocked) if open_at(middle) > 0.0 else (free, middle)
+    return free
+
+
+# Where do parts go that were drawn each by itself, so that none lies on another?
+
+OVER = 0.3  # of the smaller area: parts of two files that share more were not drawn where they belong
+SAME = 2e-6  # m, of pivots
+ROOM = 1.2  # times their width
+
+
+def side_by_side(roles: Sequence[Role], files: int) -> dict[str, tuple[float, float]]:
+    """Positions (m) in a row by name; none where the drawings show the parts where they belong, or are one.
+
+    What stands still keeps its place against the first part, whose pivot is often the origin of the movement.
+    """
+    if files < 2 or not _on_top_of_each_other(roles):
+        return {}
+    places = {role.name: (0.0, 0.0) for role in roles if not role.moves}
+    x = 0.0
+    for role in (role for role in roles if role.moves):
+        at = role.part.centre.at if role.moves and role.part.centre is not None else (0.0, 0.0)
+        around = [math.dist(at, (px, py)) for piece in role.part.pieces for px, py in piece.points.tolist()]
+        reach = ROOM * max(around)
+        x = x + reach if any(other.moves and other.name in places for other in roles) else 0.0
+        places[role.name] = (round(x, 4), 0.0)
+        x += reach
+    return places
+
+
+def _on_top_of_each_other(roles: Sequence[Role]) -> bool:
+    for k, one in enumerate(roles):
+        for other in roles[k + 1 :]:
+            if one.part.file == other.part.file:
+                continue
+            centres = one.part.centre, other.part.centre
+            if centres[0] is not None and centres[1] is not None and math.dist(centres[0].at, centres[1].at) <= SAME:
+                return True
+            shared = max(
+                p.region.intersection(q.region).area / min(p.area, q.area) for p in one.part.pieces for q in other.part.pieces
+            )
+            if shared > OVER:
+                return True
+    return False
+
+
+# Which drawings does the scene need, and on which layers of them do the bodies lie?
+#
+# The drawing as it is, where every layer belongs to one body; else a copy of its outlines in which it does.
+
+PIVOT = "PIVOT"
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """A drawing of the scene: its name and bytes; `layers` gives, by body and layer of the original, the layer there."""
+
+    name: str
+    data: bytes
+    is_sorted: bool
+    layers: dict[tuple[str, str], str]
+
+
+def drawn(sources: Sequence[Source], roles: Sequence[Role]) -> list[Drawn]:
+    """One drawing for each source; names are those of the files, which may come from different folders."""
+    stems = Counter(source.path.name.casefold() for source in sources)
+    found = []
+    for number, source in enumerate(sources):
+        own = [role for role in roles if role.part.file == number]
+        prefix = f"{number + 1}_" if stems[source.path.name.casefold()] > 1 else ""
+        if source.blocks or any(plain(layer)[1] for role in own for layer in role.part.layers):
+            found.append(_sorted(f"{prefix}{source.path.stem}_sorted.dxf", own))
+        else:
+            layers = {(role.name, layer): layer for role in own for layer in role.part.layers}
+            found.append(Drawn(prefix + source.path.name, source.drawing.data, False, layers))
+    return found
+
+
+def _sorted(name: str, roles: Sequence[Role]) -> Drawn:
+    layers: dict[tuple[str, str], str] = {}
+    loops, points = [], []
+    for role in roles:
+        own = role.name.upper()
+        for layer in role.part.layers:
+            layers[role.name, layer] = _layer_name(own, layer, len(role.part.layers))
+        loops += [replace(loop, layer=layers[role.name, piece.layer]) for piece in role.part.pieces for loop in piece.loops]
+        if role.moves and role.part.centre is not None:
+            points.append((f"{own}_{PIVOT}", role.part.centre.at))
+    return Drawn(name, dxf_text(loops, points).encode(), True, layers)
+
+
+def _layer_name(body: str, layer: str, count: int) -> str:
+    """BODY where it has only one, else BODY_LAYER, with a number where the layer was taken apart."""
+    if count == 1:
+        return body
+    name, number = plain(layer)
+    words = [
+        body,
+        *([name.strip()] if tokens(name) else []),
+        *([number] if number and (number != "1" or not tokens(name)) else []),
+    ]
+    return "_".join(words)
+
+
+# At which angles can the bodies begin without standing in each other?
 
 WHEEL_STEPS = 48  # of a pitch
 LEVER_ANGLES = np.radians((0.0, 3.0, -3.0, 5.0, -5.0, 8.0, -8.0, 11.0, -11.0)).tolist()

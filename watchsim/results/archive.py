@@ -17,13 +17,15 @@ from numpy.typing import NDArray
 
 from watchsim.results.tables import plain
 from watchsim.scene.scene import Scene
-from watchsim.simulation.record.contact_names import Pair, Pairs, as_pairs
-from watchsim.simulation.record.trajectory import EVENT_DTYPE, EventKind, Trajectory
-from watchsim.simulation.stops import Stop
-from watchsim.storage.columns import blocks
-from watchsim.storage.unpacked import unpacked
+from watchsim.simulation.recording import Pair, Pairs, as_pairs
+from watchsim.simulation.saved_state import SavedState
+from watchsim.simulation.state import EVENT_DTYPE, EventKind, Stop
+from watchsim.simulation.trajectory import Trajectory
+from watchsim.storage.columns import blocks, unpacked
 
-FORMAT = 4
+# How does a trajectory become one file, and one file a trajectory?
+
+FORMAT_ARCHIVE = 4
 OLDER = 3  # in which every pair was written out in words
 SCALARS = ("stop_message", "simulated", "wall", "compile", "method", "tolerance", "step", "keep")
 FLOATS = ("simulated", "wall", "compile", "tolerance", "worst_penetration", "worst_residual")
@@ -35,7 +37,7 @@ NUMBERS = ("worst_penetration", "worst_residual", "overlap", "energy", "counts",
 def write_trajectory(run: Trajectory, path: Path | IO[bytes]) -> None:
     """Write the file `path` (npz): t, q, u, a and events in full precision, and everything else but the scene."""
     header = {
-        "format": FORMAT,
+        "format": FORMAT_ARCHIVE,
         "stop": run.stop.name,
         "slices": {body: [columns.start, columns.stop] for body, columns in run.slices.items()},
         "names": as_pairs(run.pairs).names,
@@ -71,8 +73,8 @@ def read_trajectory(path: Path, scene: Scene) -> Trajectory:
         kind = header["format"]
         columns: dict[str, Any] = {name: unpacked(archive, name, path.parent) for name in COLUMNS}
         table = archive.get("pairs")
-    if kind not in (FORMAT, OLDER):
-        raise ValueError(f"{path} has format {kind}; this version reads format {FORMAT}. Run the scene again")
+    if kind not in (FORMAT_ARCHIVE, OLDER):
+        raise ValueError(f"{path} has format {kind}; this version reads format {FORMAT_ARCHIVE}. Run the scene again")
     with whole(path, "trajectory"):
         slices = {body: slice(*ends) for body, ends in header["slices"].items()}
     moving = {body.name for body in scene.bodies if body.motion != "fixed"}
@@ -162,3 +164,45 @@ def _in_order(t: NDArray[np.float64]) -> bool:
             return False
         before = part[-1]
     return True
+
+
+# How does a saved state become a file, and a file a saved state?
+
+FORMAT = 2
+PARTS = ("state", "tally", "recorded")  # of a state: what the names of their arrays begin with
+
+
+def write_state(state: SavedState, path: Path) -> None:
+    """Write `path` (npz): every array in full precision, a header in JSON; nothing is pickled."""
+    header = {
+        "format": FORMAT,
+        "digest": state.digest,
+        "settings": state.settings,
+        "stored_at_start": state.stored_at_start,
+        "rows": state.rows,
+        "events": state.events,
+    }
+    arrays: dict[str, Any] = {f"state_{name}": array for name, array in state.arrays.items()}
+    arrays.update({f"tally_{name}": array for name, array in state.tally.items()})
+    arrays.update({f"recorded_{name}": array for name, array in state.recorded.items()})
+    np.savez_compressed(path, header=np.frombuffer(json.dumps(header).encode(), dtype=np.uint8), **arrays)
+
+
+def read_state(path: Path) -> SavedState:
+    """The state kept in `path`; ValueError where the file is damaged or of another version."""
+    with whole(path, "saved state"), np.load(path, allow_pickle=False) as archive:
+        header: dict[str, Any] = json.loads(archive["header"].tobytes())
+        arrays = {name: archive[name] for name in archive.files if name != "header"}
+        kind = header.pop("format", None)
+    if kind != FORMAT:
+        raise ValueError(f"{path} was written by another version of watchsim; run the scene again")
+    with whole(path, "saved state"):
+        own, tally, recorded = (_of(arrays, f"{part}_") for part in PARTS)
+        state = SavedState(arrays=own, tally=tally, recorded=recorded, **header)
+        if not state.is_whole():
+            raise ValueError("its parts do not fit together")
+    return state
+
+
+def _of(arrays: dict[str, Any], prefix: str) -> dict[str, Any]:
+    return {name.removeprefix(prefix): array for name, array in arrays.items() if name.startswith(prefix)}

@@ -19,9 +19,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.scene.scene import Scene
-from watchsim.simulation.record.trajectory import EventKind, Pair, Trajectory
+from watchsim.simulation.recording import Pair
+from watchsim.simulation.state import EventKind
+from watchsim.simulation.trajectory import Trajectory
 from watchsim.storage.columns import blocks
-from watchsim.storage.nameless import give_name, nameless
+from watchsim.storage.destination import give_name, nameless
 
 EVENT_COLUMNS = (
     "t_s",

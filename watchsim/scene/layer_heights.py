@@ -12,16 +12,16 @@ from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import TYPE_CHECKING
 
-from watchsim.drawing.drawn_material import layer_roles
-from watchsim.geometry.loop import Loop
-from watchsim.geometry.solids.revolution import reach
-from watchsim.scene.body import Body
-from watchsim.scene.carriers import at_start
-from watchsim.scene.scene import Scene
-from watchsim.scene.solid import HAIRSPRING, LYING, PLATE, UPRIGHT, Solid
+from watchsim.drawing.material import layer_roles
+from watchsim.geometry.loops import Loop
+from watchsim.geometry.solids import reach
+from watchsim.scene.scene import Body, Scene
+from watchsim.scene.solids import HAIRSPRING, LYING, PLATE, UPRIGHT, Solid
+from watchsim.scene.trains import at_start
 
 if TYPE_CHECKING:
-    from watchsim.geometry.solids.enclosed_area import Region
+    from watchsim.geometry.solids import Region
+
 
 AIR = 0.1  # of a layer's thickness, between two heights
 DEVIATION = 1e-6  # m of a chord from its arc, where only overlaps are looked for
@@ -93,7 +93,7 @@ def _on_its_pivot(slab: Slab, flat: Sequence[Slab], placed: dict[int, Slab]) -> 
 
 def _heights(scene: Scene, flat: Sequence[Slab]) -> list[float]:
     """The middle of each slab, by the number of the level it finds free."""
-    from watchsim.geometry.solids.enclosed_area import region  # shapely is slow to load, and `check` has no need of it
+    from watchsim.geometry.solids import region  # shapely is slow to load, and `check` has no need of it
 
     regions, start = [], at_start(scene)
     for slab in flat:

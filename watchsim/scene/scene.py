@@ -2,20 +2,232 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from watchsim.displays import notebook_html
+from watchsim.drawing.drawing import Profile
 from watchsim.drawing.findings import Finding
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Point
-from watchsim.scene.body import Body
 from watchsim.scene.errors import Fault, SceneError
-from watchsim.scene.force import Contact, Damping, LineSpring, Spring, Torque
-from watchsim.scene.gearing import Gear
-from watchsim.scene.recording import EVERYTHING, Recording
+from watchsim.scene.forces import Contact, Damping, LineSpring, Spring, Torque
+from watchsim.scene.solids import Solid
+
+# How much of a run is kept?
+
+Window = tuple[float, float]
+
+ALL, EVENTS, STATISTICS = "all", "events", "statistics"
+KEPT = (ALL, EVENTS, STATISTICS)
+EVERY = "every"  # "every 10": every tenth row
+WHOLE_RUN: tuple[Window, ...] = ((-math.inf, math.inf),)
+
+
+@dataclass(frozen=True, slots=True)
+class Recording:
+    """Which rows and events of a run are kept; sums over the whole run are made in any case.
+
+    windows  (s, s) in which rows are kept; none means the whole run where `keep` is "all"
+    keep     "all": rows within the windows, and all events;
+             "events": the same, but without windows only the rows of the last seconds;
+             "statistics": rows and events within the windows and in the last seconds, so that memory does not grow with time
+    stride   every n-th row within the windows is kept; interpolation across rows that are left out is not exact
+    """
+
+    windows: tuple[Window, ...] = ()
+    keep: str = ALL
+    stride: int = 1
+
+    def __post_init__(self) -> None:
+        if self.keep not in KEPT:
+            raise ValueError(f'"{self.keep}" cannot be kept; choose from {", ".join(KEPT)}')
+        if self.stride < 1:
+            raise ValueError(f"every row or every n-th row can be kept; n must be at least 1, not {self.stride}")
+        for start, end in self.windows:
+            if not start < end:
+                raise ValueError(f"a window runs from an earlier to a later time, not from {start:g} s to {end:g} s")
+
+    @property
+    def has_tail(self) -> bool:
+        """True if the last seconds of the run are kept whatever the windows say."""
+        return self.keep != ALL
+
+    @property
+    def row_windows(self) -> tuple[Window, ...]:
+        """The windows, or the whole run where none are given and everything is kept."""
+        return self.windows or (WHOLE_RUN if self.keep == ALL else ())
+
+
+EVERYTHING = Recording()
+
+
+def as_recording(what: Recording | str | Iterable[Window] | None) -> Recording | None:
+    """From what is convenient in Python: a word such as "statistics", or windows in seconds."""
+    if what is None or isinstance(what, Recording):
+        return what
+    if isinstance(what, str):
+        return Recording(keep=what)
+    return Recording(tuple((float(start), float(end)) for start, end in what))
+
+
+# What binds the coordinate of one body to that of another?
+
+PRESSURE_ANGLE = math.radians(20.0)  # of gears that say nothing else: ISO 53
+
+
+@dataclass(frozen=True, slots=True)
+class Geared:
+    """A body that has no coordinate of its own: it goes `ratio` times as far as the body `to`, as gears without play make it.
+
+    rad/rad, m/rad, rad/m or m/m, of coordinates as the scene gives them: of a body that `to` carries, against that one.
+    """
+
+    to: str
+    ratio: float
+
+
+@dataclass(frozen=True, slots=True)
+class Gear:
+    """Gears between two bodies; with play each has a coordinate of its own (or is geared without play to one that has).
+
+    ratio        how far the second goes for one unit of the first: rad/rad, m/rad, rad/m or m/m
+    backlash     how far the second can go while the first is held, rad or m; in the middle of it at the start
+    restitution  Poisson's, of the impacts when the play is used up
+    efficiency   share of the work put in at either body that comes out at the other; the rest is friction of the teeth
+    pressure_angle  rad, of the line of action to the common tangent; changes no motion, only what bearings take
+    """
+
+    between: tuple[str, str]
+    ratio: float
+    backlash: float
+    restitution: float = 0.0
+    efficiency: float = 1.0
+    pressure_angle: float = PRESSURE_ANGLE
+
+
+# How does a body move whose motion is prescribed, whatever it meets?
+#
+# With q'' = a(t) - w² (q - middle): a constant speed has neither, a swing has w, a path has a(t).
+
+
+@dataclass(frozen=True)
+class Prescribed:
+    """The law of a driven coordinate, in SI units.
+
+    `square` (1/s²) is w² of a swing about `middle` (rad or m); `table` holds times (s) and accelerations (rad/s² or m/s²)
+    of a path, between which the acceleration is linear; it is zero at both ends. Start and start velocity are the body's.
+    """
+
+    square: float = 0.0
+    middle: float = 0.0
+    table: tuple[tuple[float, float], ...] = ()
+
+
+def swing(middle: float, amplitude: float, frequency: float, phase: float) -> tuple[Prescribed, float, float]:
+    """q = middle + amplitude sin(2π frequency t + phase): the law, q and q' at t = 0."""
+    w = math.tau * frequency
+    start = middle + amplitude * math.sin(phase)
+    return Prescribed(square=w * w, middle=middle), start, amplitude * w * math.cos(phase)
+
+
+def path(points: Sequence[tuple[float, float]]) -> Prescribed:
+    """The smoothest way through two or more points (time in s, coordinate), from rest to rest.
+
+    The acceleration is linear between the points and zero at both ends, so that nothing jerks there; that takes two more
+    knots, which divide the first and the last stretch (a single one in three). The later points and the rest at the end
+    are as many equations as there are accelerations to find.
+    """
+    t, q = np.array(points, float).T
+    knots = _divided(t)
+    inner = len(knots) - 2
+    way, speed = np.zeros((len(t) - 1, inner)), np.zeros(inner)
+    for j in range(inner):
+        pulse = np.zeros(len(knots))
+        pulse[j + 1] = 1.0
+        u, s = _integrated(knots, pulse)
+        way[:, j], speed[j] = s[np.searchsorted(knots, t[1:])], u[-1]
+    # Lengths against speeds times the whole time, so that the equations are of one size.
+    rows = np.vstack([way, speed * (t[-1] - t[0])])
+    found = np.linalg.solve(rows, np.concatenate([q[1:] - q[0], [0.0]]))
+    return Prescribed(table=tuple(zip(knots.tolist(), [0.0, *found.tolist(), 0.0], strict=True)))
+
+
+def _divided(t: np.ndarray) -> np.ndarray:
+    if len(t) == 2:
+        return np.linspace(t[0], t[1], 4)
+    return np.sort(np.concatenate([t, [0.5 * (t[0] + t[1]), 0.5 * (t[-2] + t[-1])]]))
+
+
+def _integrated(knots: np.ndarray, a: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Velocity and way at the knots, from rest, of an acceleration that is linear between them: exactly."""
+    h = np.diff(knots)
+    u = np.concatenate([[0.0], np.cumsum(0.5 * h * (a[:-1] + a[1:]))])
+    s = np.concatenate([[0.0], np.cumsum(h * u[:-1] + h * h * (a[:-1] / 3.0 + a[1:] / 6.0))])
+    return u, s
+
+
+# What is a body?
+
+MOTIONS = ("pivot", "slide", "free", "fixed")
+
+
+@dataclass(frozen=True)
+class Body:
+    """A rigid part, SI units. Its outlines are in its own frame, whose origin is the pivot (free bodies: the centre of mass).
+
+    motion          "pivot", "slide", "free" or "fixed"; its coordinates q are the angle itself; the distance travelled along
+                    `axis` from `position`; x, y and angle; none
+    position, angle  where the frame stands at the start, m and rad
+    velocity        at the start, in the order of the coordinates: rad/s; m/s; m/s, m/s, rad/s
+    mass, inertia   kg, and kg·m² about the origin (free bodies: about the centre of mass)
+    centre_of_mass  in the body's frame, m; it matters only where gravity acts on a pivoted body
+    loops           outlines that can touch; `decoration` is drawn only
+    solids          where mass and inertia come from, as far as they were not given as numbers
+    prescribed      the law by which a driven body moves whatever it meets; mass and inertia then change nothing
+    on              the body that carries it; position, angle and velocity are then given in that one's frame, relative to it
+    geared          to which body without play: its coordinate then follows from that one's
+    """
+
+    name: str
+    motion: str = "pivot"
+    position: Point = (0.0, 0.0)
+    angle: float = 0.0
+    velocity: tuple[float, ...] = ()
+    axis: Point = (1.0, 0.0)
+    mass: float = 0.0
+    inertia: float = 0.0
+    centre_of_mass: Point = (0.0, 0.0)
+    loops: tuple[Loop, ...] = ()
+    decoration: tuple[Loop, ...] = field(default=())
+    solids: tuple[Solid, ...] = field(default=())
+    on: str | None = None
+    prescribed: Prescribed | None = None
+    geared: Geared | None = None
+
+    def __repr__(self) -> str:
+        layers = ", ".join(self.layers) or "no outline that can touch"
+        return f"<Body {self.name!r}, {'driven' if self.prescribed else self.motion}: {layers}>"
+
+    @property
+    def layers(self) -> tuple[str, ...]:
+        """The layers of its outlines that can touch, in the order of the drawing."""
+        return tuple(dict.fromkeys(loop.layer for loop in self.loops))
+
+    @property
+    def profile(self) -> Profile:
+        """Everything drawn of it, in its own frame."""
+        drawn = (*self.loops, *self.decoration)
+        return Profile(tuple(loop for loop in drawn if loop.closed), tuple(loop for loop in drawn if not loop.closed))
+
+
+# What did the user declare?
 
 
 @dataclass(frozen=True, slots=True)

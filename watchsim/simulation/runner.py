@@ -8,41 +8,197 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-from collections.abc import Callable
+import signal
+import threading
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from types import FrameType
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.candidates.broad_phase import load_shapely
-from watchsim.candidates.cell_table import CellFinder
-from watchsim.dynamics.applied_forces import stored_energy
+from watchsim import stopping
+from watchsim.contact.broad_phase import load_shapely
+from watchsim.contact.cells import CellFinder
+from watchsim.dynamics.forces import stored_energy
 from watchsim.mechanism.compile import Compiled
-from watchsim.model.named_fields import words_of
-from watchsim.scene.oscillation import frequency
-from watchsim.scene.recording import Recording
-from watchsim.scene.scene import Scene
-from watchsim.simulation.advance import EVENTS_PER_CONTACT, ROWS_PER_STEP, advance
-from watchsim.simulation.energy_ledger import ledger, ledger_fails, usual_energy
-from watchsim.simulation.interrupts import held_interrupts
-from watchsim.simulation.loop_state.buffers import Until, new_record, new_until
-from watchsim.simulation.loop_state.scratch import new_scratch
-from watchsim.simulation.loop_state.state import COUNT_NAMES, State, new_state, room_for
-from watchsim.simulation.loop_state.state_arrays import arrays_of
-from watchsim.simulation.methods import EVENT_DRIVEN
+from watchsim.model import words_of
+from watchsim.scene.roles import frequency
+from watchsim.scene.scene import Recording, Scene
+from watchsim.simulation.event_loop import EVENTS_PER_CONTACT, ROWS_PER_STEP, advance
 from watchsim.simulation.options import Options, natural_step, options_for
-from watchsim.simulation.record.contact_names import pairs_of
-from watchsim.simulation.record.overlap_watch import OverlapWatch
-from watchsim.simulation.record.overlap_watch import warm_up as warm_up_watch
-from watchsim.simulation.record.row_selection import Kept, tail_length
-from watchsim.simulation.record.saved_state import SavedState, save_state
-from watchsim.simulation.record.scene_coordinates import events_of_scene, rows_of_scene
-from watchsim.simulation.record.tally import Tally
-from watchsim.simulation.slice_pace import Pace
-from watchsim.simulation.start_clearance import clear_start
-from watchsim.simulation.start_clearance import warm_up as warm_up_start
-from watchsim.simulation.stops import Stop
+from watchsim.simulation.overlap_watch import OverlapWatch
+from watchsim.simulation.overlap_watch import warm_up as warm_up_watch
+from watchsim.simulation.recording import Recorder, Tally, columns_of, pairs_of, tail_length
+from watchsim.simulation.run_end import (
+    driven_into,
+    failure_of,
+    furthest,
+    ledger,
+    ledger_fails,
+    unaccounted,
+    unexplained,
+    usual_energy,
+    what_alternates,
+)
+from watchsim.simulation.saved_state import SavedState, save_state
+from watchsim.simulation.scratch import Until, new_record, new_scratch, new_until
+from watchsim.simulation.start import clear_start
+from watchsim.simulation.start import warm_up as warm_up_start
+from watchsim.simulation.state import COUNT_NAMES, EVENT_DRIVEN, EVENT_DTYPE, State, Stop, arrays_of, new_state, room_for
+from watchsim.simulation.trajectory import Trajectory, events_of_scene, rows_of_scene
 from watchsim.tolerances import FIRST_STEP
+
+# How long may the loop go on before Python looks at clock, progress and interrupts again?
+#
+# A slice ends after a simulated time or a number of steps, whichever comes first: where events crowd, time is no measure of
+# work.
+# How slices end changes no bit of a run.
+
+SLICE_WALL = 0.1  # s between looks at the clock
+FEWEST_STEPS, MOST_STEPS = 16.0, 4000.0  # of a slice; steps may become much slower from one to the next
+
+
+class Pace:
+    """The length of the next slice, from how long the last one took."""
+
+    def __init__(self, duration: float) -> None:
+        self.duration = duration
+        self.length = 1e-5 * duration  # s, simulated; grows tenfold at most: a long slice would be deaf
+        self.steps = FEWEST_STEPS
+        self.start = self.begun = 0.0
+
+    def begin(self, now: float, until: Until, look: float) -> None:
+        """Set in `until` where the slice from `now` ends, at the latest at `look` (s)."""
+        self.start, self.begun = time.perf_counter(), now
+        until.slice_end = min(self.duration, now + self.length, look)
+        until.steps = self.steps
+
+    def end(self, now: float, until: Until) -> None:
+        """Learn from the slice that came to its end."""
+        pace = SLICE_WALL / max(time.perf_counter() - self.start, 1e-4)
+        if until.steps > 0.0:
+            self.length = min(max((now - self.begun) * pace, 1e-9 * self.duration), 10.0 * self.length)
+        self.steps = min(max(pace * (self.steps - until.steps), 1.0), 2.0 * self.steps, MOST_STEPS)
+
+
+# How does Ctrl-C end a run between two slices, and never in the middle of keeping what it has made?
+
+_USUAL = signal.default_int_handler
+
+
+@contextmanager
+def held_interrupts() -> Iterator[Callable[[], bool]]:
+    """Within, the first Ctrl-C is only remembered: the function handed out says whether it came. A second one raises.
+
+    In a process of the command line SIGTERM is heard alike (see stopping.py). Where somebody else listens to the signal, or
+    outside the main thread, everything stays as it is.
+    """
+    if stopping.installed():
+        with stopping.held() as requested:
+            yield lambda: requested() != 0
+        return
+    came = threading.Event()
+    if threading.current_thread() is not threading.main_thread() or signal.getsignal(signal.SIGINT) is not _USUAL:
+        yield came.is_set
+        return
+
+    def remember(number: int, frame: FrameType | None) -> None:
+        if came.is_set():
+            _USUAL(number, frame)
+        came.set()
+
+    signal.signal(signal.SIGINT, remember)
+    try:
+        yield came.is_set
+    finally:
+        signal.signal(signal.SIGINT, _USUAL)
+
+
+# What is handed back of a run when it ends, and what is said of its end?
+
+
+def trajectory_of(run: Run, stop: Stop, wall: float, compile_time: float) -> Trajectory:
+    """Everything kept of a run that ended with `stop`, as a frozen value; `wall` and `compile_time` in seconds."""
+    compiled, state = run.compiled, run.state
+    time = float(state.clock.time)
+    (t, q, u, a), events = _all_kept(run)
+    return Trajectory(
+        scene=run.scene,
+        t=t,
+        q=q,
+        u=u,
+        a=a,
+        slices=compiled.slices,
+        events=events,
+        pairs=run.pairs,
+        stop=stop,
+        stop_message=f"t = {time:.9g} s: {_words(run, stop)}",
+        simulated=time,
+        wall=wall,
+        compile=compile_time,
+        method=run.method,
+        tolerance=run.tolerance,
+        worst_penetration=float(state.worst.penetration),
+        worst_residual=float(run.worst_residual()[0]),
+        overlap=run.watch.result(float(state.worst.penetration)),
+        energy=run.energy(),
+        counts=run.counts(),
+        step=run.step,
+        end_q=compiled.relative(state.q[None])[0].copy(),
+        end_u=compiled.relative(state.u[None], rates=True)[0].copy(),
+        keep=run.kept.recording.keep,
+        spans=run.kept.spans(time),
+        sums=run.tally.finished(),
+        end_state=_end_state(run),
+        failure=failure_of(state, run.scratch, run.pairs) if stop == Stop.LCP_FAILED else None,
+    )
+
+
+def _all_kept(run: Run) -> tuple[Sequence[NDArray[np.float64]], NDArray[Any]]:
+    """t, q, u, a and the events."""
+    nothing = columns_of(np.zeros((0, 1 + 3 * len(run.state.q))))
+    return run.kept.closed(float(run.state.clock.time)) or (nothing, np.zeros(0, EVENT_DTYPE))
+
+
+def _end_state(run: Run) -> SavedState | None:
+    """The state to go on from, with how many of the rows and events that were kept belong to it."""
+    if run.saved is None:
+        return None
+    time = float(run.state.clock.time)
+    rows, events = run.kept.counts(time, run.parts_before)
+    recorded = {**run.saved.recorded, "stays": run.kept.for_good(time, run.parts_before)}
+    return dataclasses.replace(run.saved, rows=rows, events=events, recorded=recorded)
+
+
+def _words(run: Run, stop: Stop) -> str:
+    """The cause and what is known of where and why; where a driven body jams another, that is the cause."""
+    if stop == Stop.LCP_FAILED:
+        driven = {body.name for body in run.scene.bodies if body.prescribed is not None}
+        failure = failure_of(run.state, run.scratch, run.pairs) if driven else None
+        return driven_into(failure, run.pairs, driven) or stop.sentence
+    words = _details(run, stop)
+    return f"{stop.sentence}: {words}" if words else stop.sentence
+
+
+def _details(run: Run, stop: Stop) -> str:
+    if stop == Stop.OVERLAP:
+        return run.watch.words()
+    if stop == Stop.LEDGER:
+        return unaccounted(run.energy())
+    if stop == Stop.UNEXPLAINED:
+        return unexplained(run.state, run.pairs)
+    if stop == Stop.TOO_MANY_EVENTS:
+        bodies = [run.scene.bodies[coordinate.body].name for coordinate in run.compiled.model.coordinates]
+        return what_alternates(run.scratch.ended, run.pairs, bodies)
+    if stop == Stop.FAR_AWAY:
+        return furthest(run.state, run.compiled.model, [body.name for body in run.scene.bodies])
+    return ""
+
+
+# How does a simulation run from Python, whatever the stepping?
 
 Progress = Callable[[float, float], None]  # simulated time, duration
 
@@ -77,7 +233,7 @@ class Run:
         self.finder = CellFinder(model)
         self.scratch = new_scratch(model)
         self.pairs = pairs_of(compiled)
-        self.kept = Kept(
+        self.kept = Recorder(
             recording,
             tail_length(frequency(scene)),
             functools.partial(rows_of_scene, compiled),

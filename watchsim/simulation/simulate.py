@@ -2,26 +2,90 @@
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 import math
 import time
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
+import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.mechanism.compile import compile_scene
-from watchsim.scene.recording import Recording, Window, as_recording
-from watchsim.scene.scene import Scene
-from watchsim.simulation.frozen_run import trajectory_of
-from watchsim.simulation.methods import EVENT_DRIVEN, METHODS, MOREAU, USUAL_STEP
-from watchsim.simulation.record.joined_runs import joined
-from watchsim.simulation.record.saved_state import SavedState
-from watchsim.simulation.record.trajectory import Pair, Trajectory
-from watchsim.simulation.runner import Progress, Run, load_for
+from watchsim.mechanism.compile import Compiled, compile_scene
+from watchsim.model import blank, row_of
+from watchsim.scene.scene import Recording, Scene, Window, as_recording
+from watchsim.simulation.moreau import EVENTS_PER_CONTACT, ROWS_PER_STEP, Pace, advance_fixed, moreau_work
+from watchsim.simulation.recording import Pair
+from watchsim.simulation.runner import EVENTS, ROWS, Progress, Run, load_for, trajectory_of
+from watchsim.simulation.saved_state import SavedState
+from watchsim.simulation.scratch import Until, new_record
+from watchsim.simulation.state import EVENT_DRIVEN, METHODS, MOREAU, USUAL_STEP, Stop, room_for
+from watchsim.simulation.trajectory import Trajectory, joined
 from watchsim.tolerances import COARSEST_TOLERANCE, FINEST_TOLERANCE
 from watchsim.units import TIME, UnitError, parse
+
+# How does Moreau's time stepping run on the same model? The independent twin of the event-driven solver.
+
+ROWS_PER_QUARTER = 300  # of the fastest spring's period; of the scene's duration where there is no spring
+
+
+class MoreauRun(Run):
+    """Fixed steps of `step` seconds; impacts, friction and forces once for each."""
+
+    method = MOREAU
+
+    def __init__(self, scene: Scene, compiled: Compiled, tolerance: float, recording: Recording, step: float) -> None:
+        super().__init__(scene, compiled, tolerance, recording)
+        self.step = step
+        self.pace = blank(Pace)
+        self.pace.step, self.pace.row = step, max(step, self.options.max_step / ROWS_PER_QUARTER)
+        self.work = moreau_work(compiled.model)
+        self.record = new_record(
+            compiled.model, ROWS + ROWS_PER_STEP, EVENTS + EVENTS_PER_CONTACT * room_for(compiled.model), self.record.windows
+        )
+
+    def begin_from(self, saved: SavedState) -> None:
+        if "row_time" not in saved.arrays:  # earlier versions kept it with the times
+            saved = dataclasses.replace(saved, arrays=saved.arrays | {"row_time": saved.arrays["clock"][2:]})
+        super().begin_from(saved)
+
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        kept = row_of(self.work.kept)
+        own = {name: kept[name] for name in ("depth", "sweeps", "row_time")}
+        return {**super().arrays(), "memory": self.work.memory, **own}
+
+    def worst_residual(self) -> NDArray[np.float64]:
+        return cast(NDArray[np.float64], row_of(self.work.kept)["violation"])
+
+    def settings(self) -> dict[str, Any]:
+        return {**super().settings(), "step": self.step}
+
+    def _advance(self, until: Until, record: Any) -> Stop:
+        model = self.compiled.model
+        # Of fixed length, so that their number is a time.
+        before = float(self.state.clock.time)
+        until.slice_end = min(until.slice_end, before + until.steps * self.pace.step)
+        code = advance_fixed(model, self.finder.cells, self.state, self.options, until, self.pace, self.work, record)
+        until.steps -= round((float(self.state.clock.time) - before) / self.pace.step)
+        return Stop(int(code))
+
+    def _learn(self) -> None:
+        self.finder.learn(int(self.work.asked.cell.pair), self.work.asked.at.copy(), self.state.u)
+
+    def counts(self) -> dict[str, int]:
+        return {**super().counts(), "sweeps": int(self.work.kept.sweeps)}
+
+    def _ledger_fails(self) -> bool:
+        """Never: the error of the ledger goes with the step, which the user has chosen."""
+        return False
+
+    def _dissipated(self) -> dict[str, float]:
+        return {**super()._dissipated(), "stepping": float(self.state.sums.correction)}
+
+
+# How is a scene simulated from Python?
 
 Follow = Callable[[Sequence[Pair], NDArray[Any], Sequence[NDArray[Any]]], object]
 
@@ -64,7 +128,7 @@ def simulate(  # noqa: PLR0913 - options, by name
     """
     begun = time.perf_counter()
     if not isinstance(scene, Scene):
-        from watchsim.scene.file.load import load
+        from watchsim.scene.load import load
 
         scene = load(scene)
     duration = scene.duration if duration is None else _seconds("duration", duration)
@@ -77,8 +141,6 @@ def simulate(  # noqa: PLR0913 - options, by name
     loading = time.perf_counter() - loading
     recording = as_recording(record) or scene.record
     if method == MOREAU:
-        from watchsim.simulation.moreau.time_stepping import MoreauRun
-
         run: Run = MoreauRun(scene, compiled, tolerance, recording, USUAL_STEP if step is None else float(step))
     else:
         run = Run(scene, compiled, tolerance, recording)

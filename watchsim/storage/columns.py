@@ -1,7 +1,6 @@
-"""Where do rows go that are more than memory should hold?
+"""How is a long array read from an archive without memory for all of it?
 
-Into files without a name: the system takes them away when the process ends, however it ends. They are read through the page
-cache, as arrays that are mapped; what was read can be let go again, so that it does not count as memory of the process.
+Unpacked piece by piece into a file without a name, and looked at there (see storage/columns.py).
 """
 
 from __future__ import annotations
@@ -10,12 +9,18 @@ import contextlib
 import math
 import mmap
 import tempfile
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import IO, Any
 
 import numpy as np
+from numpy.lib import format as npy
 from numpy.typing import NDArray
+
+# Where do rows go that are more than memory should hold?
+#
+# Into files without a name: the system takes them away when the process ends, however it ends. They are read through the page
+# cache, as arrays that are mapped; what was read can be let go again, so that it does not count as memory of the process.
 
 MOST = 32e6  # bytes of columns in memory before they are written out: minutes of a watch
 NEXT = 4e6  # bytes that are written out together from then on
@@ -139,8 +144,80 @@ def rows_where(array: NDArray[Any], is_wanted: Callable[[NDArray[Any]], NDArray[
 
 def let_go(*arrays: NDArray[Any]) -> None:
     """Have what was read of mapped arrays count no longer as memory of this process; it is read again where it is needed."""
-    for array in arrays:
-        content = mapping(array)
+    for each in arrays:
+        content = mapping(each)
         if content is not None and hasattr(content, "madvise") and hasattr(mmap, "MADV_DONTNEED"):
             with contextlib.suppress(OSError, ValueError):
                 content.madvise(mmap.MADV_DONTNEED)
+
+
+# Where does a text go that is longer than memory should hold?
+#
+# Into a file without a name, once it is long (see storage/columns.py).
+
+PIECE = 1 << 20  # bytes that are copied at a time
+
+
+class LongText:
+    """A text made of pieces, in UTF-8; what is long lies in a file in `folder`, in memory where there is none."""
+
+    def __init__(self, pieces: Iterable[str], folder: Path | None = None) -> None:
+        columns = Columns()
+        columns.folder = folder
+        for piece in pieces:
+            columns.append((np.frombuffer(piece.encode("utf-8", "replace"), np.uint8),))
+        (self._bytes,) = columns.all() or [np.zeros(0, np.uint8)]
+
+    @property
+    def size(self) -> int:
+        """Bytes."""
+        return len(self._bytes)
+
+    def __str__(self) -> str:
+        return self._bytes.tobytes().decode()
+
+    def write(self, path: Path) -> None:
+        """Copy it to the file `path`."""
+        with path.open("wb") as file:
+            for (part,) in blocks(self._bytes, length=PIECE):
+                file.write(part.tobytes())
+
+
+# How is a long array read from an archive without memory for all of it?
+
+
+def unpacked(archive: np.lib.npyio.NpzFile, name: str, folder: Path) -> NDArray[Any]:
+    """Member `name` of an open npz archive; where it is long, mapped from a file without a name.
+
+    The file lies in `folder`, where it can be written and has the room, else among the temporary ones, else there is none.
+    ValueError, zipfile.BadZipFile and the like for a damaged member.
+    """
+    member, file = f"{name}.npy", archive.zip
+    if file is None or member not in file.namelist() or file.getinfo(member).file_size <= MOST:
+        return np.asarray(archive[name])
+    for place in (folder, None):
+        with contextlib.suppress(OSError), file.open(member) as packed:
+            shape, by_columns, kind = _header(packed)
+            if by_columns or kind.hasobject or file.getinfo(member).file_size != packed.tell() + _bytes(shape, kind):
+                break  # not written here: for numpy to read or to refuse
+            return _moved(packed, place, shape, kind)
+    return np.asarray(archive[name])
+
+
+def _header(packed: IO[bytes]) -> tuple[tuple[int, ...], bool, np.dtype[Any]]:
+    """Shape, whether column by column, and type."""
+    version = npy.read_magic(packed)
+    read = npy.read_array_header_1_0 if version == (1, 0) else npy.read_array_header_2_0
+    return read(packed)  # type: ignore[no-any-return, no-untyped-call, unused-ignore]
+
+
+def _bytes(shape: tuple[int, ...], kind: np.dtype[Any]) -> int:
+    return math.prod(shape) * kind.itemsize
+
+
+def _moved(packed: IO[bytes], place: Path | None, shape: tuple[int, ...], kind: np.dtype[Any]) -> NDArray[Any]:
+    with tempfile.TemporaryFile(dir=place) as file:  # the mapping holds it open
+        while piece := packed.read(PIECE):
+            file.write(piece)
+        file.flush()
+        return mapped(file, shape[0], np.zeros((0, *shape[1:]), kind))

@@ -1,6 +1,6 @@
-"""Can what is about to be computed be written where it is to go?
+"""How does a file that is made without a name get one?
 
-Worth knowing in the first second, not after a night. Everything is tried that can be tried without touching what is there.
+The system takes it away should the process end before. Linux can give it a name as it is; elsewhere it is copied.
 """
 
 from __future__ import annotations
@@ -8,11 +8,17 @@ from __future__ import annotations
 import os
 import shutil
 import stat
+import tempfile
+import time
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import IO
 
-from watchsim.storage.disk import reason, size_text, write_bytes
-from watchsim.storage.scratch_folder import scratch_in
-from watchsim.storage.write import real, sweep
+from watchsim.storage.write import real, reason, scratch_in, size_text, sweep, write_bytes, write_folder
+
+# Can what is about to be computed be written where it is to go?
+#
+# Worth knowing in the first second, not after a night. Everything is tried that can be tried without touching what is there.
 
 LEAST_ROOM = 4_000_000  # bytes: a small run with its plots
 PROBE = bytes(65536)
@@ -107,3 +113,71 @@ def _try(target: Path, place: Path, what: str, room: float) -> None:
             f"{target}: {what} may need {size_text(room)}, and only {size_text(free)} are free on the disk of {place.parent}. "
             "Make room, or choose another place"
         )
+
+
+# Where do results go that cannot be written where they were to go?
+
+
+def write_elsewhere(name: str, fill: Callable[[Path], object], what: str) -> Path:
+    """Write to the first place that can be written: here, at home, or among temporary files; OSError where none can."""
+    refusals: list[str] = []
+    for parent in second_places():
+        target = parent / f"{name[:100]}-rescued-{time.strftime('%Y%m%d-%H%M%S')}-{os.urandom(2).hex()}"
+        try:
+            write_folder(target, fill, lambda _: False, what)
+        except OSError as error:
+            refusals.append(str(error))
+        else:
+            return target
+    raise OSError("; ".join(refusals))
+
+
+def second_places() -> Iterator[Path]:
+    """Folders that may be writable, the nearest first."""
+    found: dict[Path, None] = {}
+    for find in (Path.cwd, Path.home, lambda: Path(tempfile.gettempdir())):
+        try:
+            found[find().resolve()] = None
+        except (OSError, RuntimeError):
+            continue
+    yield from found
+
+
+# How does a file that is made without a name get one?
+
+PIECE = 1 << 20  # bytes that are copied at a time
+
+
+def nameless(folder: Path) -> IO[bytes]:
+    """A new file in the file system of `folder`, for writing and reading."""
+    if hasattr(os, "O_TMPFILE"):
+        try:
+            return os.fdopen(os.open(folder, os.O_TMPFILE | os.O_RDWR, 0o666), "w+b")
+        except OSError:  # not every file system can do that
+            pass
+    return tempfile.TemporaryFile(dir=folder)
+
+
+def give_name(file: IO[bytes], path: Path) -> None:
+    """Have the content of the file in `path`, which must not exist yet. OSError where that fails."""
+    file.flush()
+    if not _linked(file, path):
+        file.seek(0)
+        with path.open("wb") as copy:
+            shutil.copyfileobj(file, copy, PIECE)
+
+
+def _linked(file: IO[bytes], path: Path) -> bool:
+    """Give it the name itself; False where that cannot be done."""
+    if not hasattr(os, "O_TMPFILE"):
+        return False
+    try:
+        folder = os.open(path.parent, os.O_RDONLY)
+        try:
+            # With a folder given, the system follows the link in /proc to the file.
+            os.link(f"/proc/self/fd/{file.fileno()}", path.name, dst_dir_fd=folder, follow_symlinks=True)
+        finally:
+            os.close(folder)
+    except (OSError, NotImplementedError):
+        return False
+    return True

@@ -7,14 +7,256 @@ until then. Replacing a folder takes two renames; if the process dies between th
 from __future__ import annotations
 
 import contextlib
+import errno
 import json
 import os
 import shutil
+import tempfile
+import threading
+import time
 from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import IO
 
-from watchsim.storage.disk import reason, sync_file, sync_folder, sync_name, sync_tree, write_bytes
-from watchsim.storage.scratch_folder import Scratch, guard, leftovers, scratch_in
+from watchsim import stopping
+
+# What must be on the disk before the next step may be taken?
+#
+# A rename may reach the disk before the bytes of what was renamed: after a power cut there would be an empty file under the
+# final
+# name. So everything is synchronised first.
+
+AT_ONCE = 8  # files
+CANNOT = (errno.EINVAL, errno.ENOTSUP, errno.EACCES, errno.EPERM, errno.EBADF, errno.EISDIR)
+
+
+def write_bytes(path: Path, content: bytes) -> None:
+    """Write one small file and see it onto the disk."""
+    with path.open("wb") as file:
+        file.write(content)
+        file.flush()
+        os.fsync(file.fileno())
+
+
+def sync_tree(folder: Path, files: bool = True) -> None:
+    """See every file below `folder`, and the folders that name them, onto the disk; OSError where that fails."""
+    places = [(Path(place), names) for place, _, names in os.walk(folder, topdown=False)]
+    found = [place / name for place, names in places for name in (names if files else ())]
+    with ThreadPoolExecutor(AT_ONCE) as threads:  # a disk takes many at once in the time of a few
+        list(threads.map(sync_file, (path for path in found if not path.is_symlink())))
+    for place, _ in places:
+        sync_folder(place)
+
+
+def sync_file(path: Path) -> None:
+    """See the bytes of a file onto the disk."""
+    # Windows synchronises only what is open for writing.
+    number = os.open(path, os.O_RDWR if os.name == "nt" else os.O_RDONLY)
+    try:
+        os.fsync(number)
+    finally:
+        os.close(number)
+
+
+def sync_folder(folder: Path) -> None:
+    """See the names in `folder` onto the disk, where the system can do that with a folder."""
+    if os.name == "nt":
+        return
+    number = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(number)
+    except OSError as error:
+        if error.errno not in CANNOT:
+            raise
+    finally:
+        os.close(number)
+
+
+def sync_name(path: Path) -> None:
+    """See a name that has just been given onto the disk; what was renamed is there in any case, so a failure counts nothing."""
+    with contextlib.suppress(OSError):
+        sync_folder(path.parent)
+
+
+def reason(error: OSError) -> str:
+    """Why, in the system's words, without its number."""
+    return error.strerror or str(error) or type(error).__name__
+
+
+def size_text(count: float) -> str:
+    """Bytes for people: "12 MB"."""
+    for unit in ("bytes", "kB", "MB", "GB"):
+        if count < 1000.0:
+            return f"{count:.3g} {unit}"
+        count /= 1000.0
+    return f"{count:.3g} TB"
+
+
+# Where is something made before it gets its name, and who clears up after a process that was killed?
+#
+# In a folder beside the destination with a name that nobody else has. Its maker holds a lock in it, which the system lets go
+# when the process ends, however it ends: a scratch folder whose lock is free belongs to nobody. Process numbers would not do:
+# in containers they repeat.
+
+try:
+    import fcntl
+except ImportError:  # Windows
+    fcntl = None  # type: ignore[assignment]
+
+PREFIX = ".watchsim-"
+LOCK, NEW, OLD, JOURNAL = "lock", "new", "old", "journal.json"
+ABANDONED = 86400.0  # s after which a scratch folder belongs to nobody, where the system knows no locks
+ATTEMPTS = 100
+
+PATIENCE = 5.0  # s that an exchange of folders may take before a process that is to end at once leaves it as it is
+
+_live: dict[Path, Scratch] = {}
+# Held by whoever puts one folder in the place of another, or makes a scratch folder, and for good by a process that leaves.
+guard = threading.Lock()
+
+
+class Scratch:
+    """A folder of one's own in `parent`; `new` is where to write."""
+
+    def __init__(self, place: Path, lock: IO[bytes] | None) -> None:
+        self.place, self._lock = place, lock
+        self.new, self.old, self.journal = place / NEW, place / OLD, place / JOURNAL
+        self.recoverable = False  # what it holds is complete and must outlive the process
+
+    def close(self) -> None:
+        """Take it away, the lock last: nobody else looks into it before."""
+        self.clear()
+        _live.pop(self.place, None)
+        if self._lock is not None:
+            self._lock.close()
+
+    def clear(self) -> None:
+        """Remove all it holds, and itself."""
+        shutil.rmtree(self.new, ignore_errors=True)
+        shutil.rmtree(self.old, ignore_errors=True)
+        for path in (self.journal, self.place / LOCK):
+            with contextlib.suppress(OSError):
+                path.unlink()
+        shutil.rmtree(self.place, ignore_errors=True)
+
+    def leave(self) -> None:
+        """Let go of it as it is, for somebody later."""
+        _live.pop(self.place, None)
+        if self._lock is not None:
+            self._lock.close()
+
+
+def make(parent: Path) -> Scratch:
+    """A new scratch folder in `parent`; OSError where there can be none."""
+    for _ in range(ATTEMPTS):
+        with guard:
+            place = Path(tempfile.mkdtemp(prefix=PREFIX, dir=parent))
+            try:
+                lock = _taken(place / LOCK)
+            except OSError as error:
+                shutil.rmtree(place, ignore_errors=True)
+                if isinstance(error, FileNotFoundError):
+                    continue  # somebody who was clearing up took it for a leftover before it was locked
+                raise
+            scratch = Scratch(place, lock)
+            _live[place] = scratch
+            return scratch
+    raise OSError(f"no scratch folder could be made in {parent}")
+
+
+@contextlib.contextmanager
+def scratch_in(parent: Path) -> Iterator[Scratch]:
+    """A scratch folder for as long as it is needed."""
+    scratch = make(parent)
+    try:
+        yield scratch
+    finally:
+        if scratch.recoverable:
+            scratch.leave()
+        else:
+            scratch.close()
+
+
+def leftovers(parent: Path) -> Iterator[Scratch]:
+    """The scratch folders in `parent` whose makers are gone; each is taken away afterwards unless marked as recoverable."""
+    try:
+        with os.scandir(parent) as entries:
+            places = [Path(entry.path) for entry in entries if entry.name.startswith(PREFIX) and _is_own(entry)]
+    except OSError:
+        return
+    for place in places:
+        scratch = None if place in _live else _claimed(place)
+        if scratch is not None:
+            yield scratch
+            if scratch.recoverable:
+                scratch.leave()
+            else:
+                scratch.close()
+
+
+def _claimed(place: Path) -> Scratch | None:
+    """The scratch folder, if its maker is gone."""
+    try:
+        lock = _taken(place / LOCK, existing=True)
+    except FileNotFoundError:
+        # Its maker was killed before there was a lock, or is about to make one, and tries again where the folder is gone.
+        with contextlib.suppress(OSError):
+            place.rmdir()
+            return None
+        lock = None
+    except OSError:  # its maker is alive
+        return None
+    if lock is None and not _is_abandoned(place):
+        return None
+    return Scratch(place, lock)
+
+
+def _is_own(entry: os.DirEntry[str]) -> bool:
+    """True for a folder of this user: another one's journal could name any target."""
+    if not entry.is_dir(follow_symlinks=False):
+        return False
+    return not hasattr(os, "getuid") or entry.stat(follow_symlinks=False).st_uid == os.getuid()
+
+
+def _taken(path: Path, existing: bool = False) -> IO[bytes] | None:
+    """The lock, held until it is closed; None where the system knows none. BlockingIOError where somebody holds it."""
+    file = path.open("rb+" if existing else "xb+")
+    if fcntl is None:
+        file.close()
+        return None
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError as error:
+        file.close()
+        if isinstance(error, BlockingIOError):
+            raise
+        return None  # a file system without locks
+    if not path.exists():
+        file.close()
+        raise FileNotFoundError(path)
+    return file
+
+
+def _is_abandoned(place: Path) -> bool:
+    with contextlib.suppress(OSError):
+        return time.time() - place.stat().st_mtime > ABANDONED
+    return False
+
+
+@stopping.before_leaving
+def abandon() -> None:
+    """Take away the scratch folders of this process, as it leaves at once; what is complete stays for the next command."""
+    if not guard.acquire(timeout=PATIENCE):
+        return
+    for scratch in list(_live.values()):
+        for _ in range(ATTEMPTS):  # the main thread may still be writing into it
+            if scratch.recoverable or not scratch.place.exists():
+                break
+            scratch.clear()
+
+
+# How is a file or a folder written whole or not at all?
 
 Ours = Callable[[str], bool]  # of a path in the folder, with slashes: is it a file of ours, which may be replaced?
 

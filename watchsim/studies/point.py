@@ -6,22 +6,65 @@ reason in the row and stops nobody.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import difflib
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from watchsim.analysis.timing.averages import mean_over
-from watchsim.analysis.verdicts.verdict_kinds import TICKS
+from watchsim.analysis.timing import mean_over
+from watchsim.analysis.verdict_kinds import TICKS
 from watchsim.scene.errors import SceneError
-from watchsim.scene.file.read_scene import changed
+from watchsim.scene.load import changed
 from watchsim.scene.roles import roles
 from watchsim.scene.scene import Scene
 from watchsim.simulation.simulate import simulate
-from watchsim.simulation.stops import Stop
+from watchsim.simulation.state import Stop
+from watchsim.studies.all_cycles import judged
 from watchsim.studies.axes import Value
-from watchsim.studies.limit_cycle.find_cycle import steady
-from watchsim.studies.limit_cycle.judge import judged
-from watchsim.studies.outputs import OUTPUTS
+from watchsim.studies.steady import steady
+
+# Which numbers of a point can be asked for?
+
+
+@dataclass(frozen=True)
+class Output:
+    """`name` is what is asked for, `column` the name with its unit, `label` and `unit` for people."""
+
+    name: str
+    column: str
+    label: str
+    unit: str
+    has_error: bool = True
+
+
+OUTPUTS = {
+    one.name: one
+    for one in (
+        Output("amplitude", "amplitude_deg", "amplitude", "°"),
+        Output("rate", "rate_s_per_d", "rate", "s/d"),
+        Output("beat_error", "beat_error_ms", "beat error", "ms"),
+        Output("period", "period_s", "period", "s"),
+        Output("multiplier", "multiplier", "multiplier", "", has_error=False),
+    )
+}
+USUAL = ("amplitude", "rate", "beat_error")
+
+
+def outputs_named(names: Iterable[str]) -> tuple[Output, ...]:
+    """The outputs of those names, each once; ValueError for one that there is not."""
+    found = []
+    for name in dict.fromkeys(names):
+        if name not in OUTPUTS:
+            near = difflib.get_close_matches(name, OUTPUTS, n=1)
+            advice = f'Did you mean "{near[0]}"?' if near else f"There are {', '.join(OUTPUTS)}."
+            raise ValueError(f'outputs: "{name}" is not an output. {advice}')
+        found.append(OUTPUTS[name])
+    if not found:
+        raise ValueError(f"outputs: name at least one of {', '.join(OUTPUTS)}")
+    return tuple(found)
+
+
+# What does the watch do at one point of a study?
 
 Row = dict[str, Any]
 

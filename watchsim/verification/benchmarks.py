@@ -6,17 +6,24 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import TURN, Arc, Line
-from watchsim.profiles_path import profiles_dir
-from watchsim.scene.body import Body
-from watchsim.scene.file.load import load
-from watchsim.scene.force import Contact, Damping, Side, Spring, Torque
-from watchsim.scene.scene import Scene
-from watchsim.simulation.event_kinds import EventKind
-from watchsim.simulation.record.trajectory import Trajectory
-from watchsim.verification.closed_forms import Incline, incline_state
-from watchsim.verification.closed_swings import Damped, Stopped, damped_state, stopped_state, touch_times, turning_time
+from watchsim.paths import profiles_dir
+from watchsim.scene.forces import Contact, Damping, Side, Spring, Torque
+from watchsim.scene.load import load
+from watchsim.scene.scene import Body, Scene
+from watchsim.simulation.state import EventKind
+from watchsim.simulation.trajectory import Trajectory
+from watchsim.verification.checks import (
+    Damped,
+    Incline,
+    Stopped,
+    damped_state,
+    incline_state,
+    stopped_state,
+    touch_times,
+    turning_time,
+)
 
 TOLERANCE = 1e-9
 BETWEEN_ROWS = 1e-7  # where a curved motion is interpolated between two accepted steps
@@ -49,7 +56,7 @@ class Benchmark:
 def inclines() -> list[Benchmark]:
     """The disc on the incline: its three frictions read from the profiles, and none."""
     folder = profiles_dir() / "incline"
-    source = "closed form (geometric series), watchsim/verification/closed_forms.py"
+    source = "closed form (geometric series), watchsim/verification/checks.py"
     scenes = [(mu, load(folder / file)) for file, mu in INCLINES]
     rough = scenes[0][1]
     scenes.append((0.0, replace(rough, contacts=tuple(replace(contact, friction=0.0) for contact in rough.contacts))))
@@ -100,7 +107,7 @@ def _damped_balance() -> Benchmark:
         *_state_checks(damped_state(case, scene.duration), scene.duration),
         *_state_checks(damped_state(case, 0.77), 0.77, BETWEEN_ROWS),
     ]
-    source = "textbook solution, watchsim/verification/closed_swings.py"
+    source = "textbook solution, watchsim/verification/checks.py"
     return Benchmark("damped balance under a constant torque", scene, (*checks, *soundness()), source)
 
 
@@ -126,7 +133,7 @@ def _pendulum_against_stop(length: float = 0.02, bob: float = 0.002, gravity: fl
         *_state_checks(stopped_state(case, scene.duration), scene.duration),
         *_state_checks(stopped_state(case, 0.05), 0.05, BETWEEN_ROWS),
     ]
-    source = "elliptic functions, watchsim/verification/closed_swings.py"
+    source = "elliptic functions, watchsim/verification/checks.py"
     return Benchmark("pendulum against a stop", scene, (*checks, *soundness()), source)
 
 

@@ -8,13 +8,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.contact.kinematics import Closed, ClosedRef
+from watchsim.contact.gaps import Closed, ClosedRef
 from watchsim.dynamics import acceleration
 from watchsim.dynamics import impact as impacts
 from watchsim.dynamics.delassus import ContactWork, ContactWorkRef
-from watchsim.dynamics.lcp.lemke_pivoting import LcpWorkRef
+from watchsim.dynamics.lcp import LcpWorkRef
 from watchsim.jit import entry
-from watchsim.model.records import Model, ModelRef
+from watchsim.model import Model, ModelRef
 
 Array = NDArray[np.float64]
 Codes = NDArray[np.int8]

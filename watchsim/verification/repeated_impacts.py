@@ -7,14 +7,13 @@ from __future__ import annotations
 
 import math
 
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import TURN, Arc, Line
-from watchsim.scene.body import Body
-from watchsim.scene.force import Contact, Side, Spring, Torque
-from watchsim.scene.scene import Scene
-from watchsim.simulation.event_kinds import EventKind
+from watchsim.scene.forces import Contact, Side, Spring, Torque
+from watchsim.scene.scene import Body, Scene
+from watchsim.simulation.state import EventKind
 from watchsim.verification.benchmarks import Benchmark, Check, Measure, counted, picked, soundness
-from watchsim.verification.simple_shapes import box, circle, ground
+from watchsim.verification.checks import box, circle, ground
 
 GRAVITY = 9.81
 FORCES = 1e-9  # a contact is kept until its forces fail by more than their rounding, `Options.force_zero`

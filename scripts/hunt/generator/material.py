@@ -8,10 +8,9 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from watchsim.geometry.polyline import polyline
+from watchsim.geometry.loops import polyline
 from watchsim.mechanism.overlap import overlaps
-from watchsim.scene.body import Body
-from watchsim.scene.scene import Scene
+from watchsim.scene.scene import Body, Scene
 
 DEVIATION = 1e-6  # of the scene's size: of the polylines for arcs
 Poses = dict[str, tuple[float, float, float]]

@@ -9,12 +9,11 @@ from typing import TypeVar
 
 import numpy as np
 
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Point
-from watchsim.geometry.solids.mass import mass_properties
-from watchsim.scene.body import Body
-from watchsim.scene.force import Contact, Damping, Side, Spring, Torque
-from watchsim.scene.scene import Scene
+from watchsim.geometry.solids import mass_properties
+from watchsim.scene.forces import Contact, Damping, Side, Spring, Torque
+from watchsim.scene.scene import Body, Scene
 
 T = TypeVar("T")
 

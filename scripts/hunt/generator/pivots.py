@@ -18,7 +18,7 @@ from hunt.generator.shapes import (
     turned_points,
 )
 from watchsim.geometry.primitives import TURN
-from watchsim.scene.force import Damping, Spring, Torque
+from watchsim.scene.forces import Damping, Spring, Torque
 from watchsim.scene.scene import Scene
 
 

@@ -13,7 +13,7 @@ from itertools import pairwise
 import numpy as np
 
 from hunt.generator.parts import Dice
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import TURN, Arc, Edge, Line, Point
 
 Curve = Callable[[float], Point]

@@ -6,10 +6,9 @@ import math
 
 from hunt.generator.parts import MM, Dice, fixed, free, pivoted, scene, sliding
 from hunt.generator.shapes import box, circle, kinked_bar, polygon, ragged, wavy_bar
-from watchsim.geometry.loop import Loop
-from watchsim.scene.body import Body
-from watchsim.scene.force import Damping, Spring, Torque
-from watchsim.scene.scene import Scene
+from watchsim.geometry.loops import Loop
+from watchsim.scene.forces import Damping, Spring, Torque
+from watchsim.scene.scene import Body, Scene
 
 
 def kink(dice: Dice) -> Scene:

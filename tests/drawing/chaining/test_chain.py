@@ -12,13 +12,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from watchsim.drawing.chaining.chain import chain
-from watchsim.drawing.content import Stroke
+from watchsim.drawing.chaining import chain
 from watchsim.drawing.drawing import Drawing
-from watchsim.drawing.findings import Finding
-from watchsim.geometry.loop import Loop
+from watchsim.drawing.findings import Finding, Stroke
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import TURN, Arc, Edge, Line, Point
-from watchsim.geometry.solids.mass import area
+from watchsim.geometry.solids import area
 
 Reader = Callable[..., Drawing]
 SQUARE = [(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)]

@@ -9,9 +9,9 @@ from itertools import permutations, product
 
 import pytest
 
-from watchsim.drawing.chaining.chain import assembled, chain, closed_runs, folded, joint_of
-from watchsim.drawing.content import Stroke
-from watchsim.geometry.loop import Loop
+from watchsim.drawing.chaining import assembled, chain, closed_runs, folded, joint_of
+from watchsim.drawing.findings import Stroke
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import TURN, Arc, Edge, Line, Point
 
 MM = 1e-3

@@ -11,11 +11,11 @@ from typing import Any
 import dxf_text as d
 import pytest
 
-from watchsim.drawing.chaining.crossings import Meeting, crossings, stretches
-from watchsim.drawing.chaining.outline_source import Outline
+from watchsim.drawing.chain_faults import Meeting, crossings, stretches
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.findings import Finding
-from watchsim.geometry.loop import Loop
+from watchsim.drawing.nodes import Outline
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import TURN, Arc, Edge, Line, moved
 
 Reader = Callable[..., Drawing]

@@ -8,12 +8,12 @@ from collections.abc import Callable
 import dxf_text as d
 import pytest
 
-from watchsim.drawing.chaining import nesting
-from watchsim.drawing.chaining.chain import chain
-from watchsim.drawing.content import Stroke
+from watchsim.drawing import chaining as nesting
+from watchsim.drawing.chaining import chain
 from watchsim.drawing.drawing import Drawing
-from watchsim.geometry import near_edges
-from watchsim.geometry.edge_table import table_of
+from watchsim.drawing.findings import Stroke
+from watchsim.geometry import loops as near_edges
+from watchsim.geometry.loops import table_of
 from watchsim.geometry.primitives import TURN, Arc
 
 MEGABYTE = 1 << 20

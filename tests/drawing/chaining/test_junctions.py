@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from watchsim.drawing.chaining.junctions import _linked
+from watchsim.drawing.nodes import _linked
 
 
 @pytest.mark.parametrize("seed", range(20))

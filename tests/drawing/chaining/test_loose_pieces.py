@@ -9,32 +9,31 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from watchsim.drawing.chaining.nodes import Grid, Nodes
-from watchsim.drawing.chaining.open_ends import (
+from watchsim.drawing.chain_faults import (
     FEW,
     MENDABLE,
+    NEAR,
     STRAY,
     chains_of,
+    distance,
     gap_finding,
     near_pairs,
     paired,
     related,
+    same_edge,
+    same_loop,
     shown,
     stray_finding,
     stray_lines,
-)
-from watchsim.drawing.chaining.outline_source import Outline
-from watchsim.drawing.chaining.stray_edges import (
-    same_edge,
-    same_loop,
+    twins,
     unbroken_rows,
     unique_loops,
     with_length,
     without_doubles,
 )
-from watchsim.drawing.chaining.twins import NEAR, distance, twins
-from watchsim.drawing.content import Stroke
-from watchsim.geometry.loop import Loop
+from watchsim.drawing.findings import Stroke
+from watchsim.drawing.nodes import Grid, Nodes, Outline
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import TURN, Arc, Edge, Line, Point
 
 MM, NM = 1e-3, 1e-9

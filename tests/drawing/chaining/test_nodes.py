@@ -8,8 +8,8 @@ from itertools import pairwise
 
 import pytest
 
-from watchsim.drawing.chaining.nodes import Grid, Nodes
-from watchsim.drawing.content import Stroke
+from watchsim.drawing.findings import Stroke
+from watchsim.drawing.nodes import Grid, Nodes
 from watchsim.geometry.primitives import Line
 
 

@@ -8,11 +8,9 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from watchsim.drawing.chaining.crossings import Layer, Meeting, crossing_finding, fresh, names, overlap_finding, stretches
-from watchsim.drawing.chaining.nodes import Grid
-from watchsim.drawing.chaining.outline_source import Outline
-from watchsim.drawing.chaining.track import Track, arrival, nearest_fraction, passes_through
-from watchsim.geometry.loop import Loop
+from watchsim.drawing.chain_faults import Layer, Meeting, crossing_finding, fresh, names, overlap_finding, stretches
+from watchsim.drawing.nodes import Grid, Outline, Track, arrival, nearest_fraction, passes_through
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import TURN, Arc, Edge, Line, Point
 
 MM = 1e-3

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from watchsim.drawing.chaining.track import Track
-from watchsim.geometry.loop import Loop
+from watchsim.drawing.nodes import Track
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Line, Point
 
 CORNERS: tuple[Point, ...] = ((0.0, 0.0), (4e-3, 0.0), (4e-3, 3e-3), (1e-3, 3e-3), (0.0, 1e-3))

@@ -7,8 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from watchsim.drawing.chaining.twins import MOST, distance, finding
-from watchsim.geometry.loop import Loop
+from watchsim.drawing.chain_faults import MOST_TWINS as MOST
+from watchsim.drawing.chain_faults import distance, finding
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Line
 
 

@@ -11,12 +11,10 @@ import pytest
 from shapely import LineString, distance
 from shapely import points as shapely_points
 
-from watchsim.drawing.curves.affine import Affine
-from watchsim.drawing.curves.plane_shapes import Spline
-from watchsim.drawing.curves.spline_copies import Follower, motion_between
 from watchsim.drawing.drawing import Drawing
-from watchsim.geometry.loop import Loop
-from watchsim.geometry.polyline import polyline
+from watchsim.drawing.projection import Affine, Spline
+from watchsim.drawing.splines import Follower, motion_between
+from watchsim.geometry.loops import Loop, polyline
 
 Reader = Callable[..., Drawing]
 CONTROL = np.array([0.3 + 0.1j, 1.0 + 2.0j, 2.5 - 1.5j, 4.0 + 0.7j])  # mm

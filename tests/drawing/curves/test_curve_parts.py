@@ -9,12 +9,22 @@ import numpy as np
 import pytest
 from scipy.interpolate import BSpline, CubicSpline
 
-from watchsim.drawing.curves.dense_polygon import _bezier_spans, corners, polygon_edges, smooth
-from watchsim.drawing.curves.ellipse_to_arcs import SLIVER, axis_cuts, ellipses_edges, mirrored, rational
-from watchsim.drawing.curves.fit_points import around, through
-from watchsim.drawing.curves.plane_shapes import Conic, Spline
-from watchsim.drawing.curves.spline_to_arcs import cleaned, pieces_of, spline_from, splines_edges, uniform
+from watchsim.drawing.curves import SLIVER, axis_cuts, ellipses_edges, mirrored, rational
 from watchsim.drawing.dxf_records import DxfError
+from watchsim.drawing.projection import Conic, Spline
+from watchsim.drawing.splines import (
+    _bezier_spans,
+    around,
+    cleaned,
+    corners,
+    pieces_of,
+    polygon_edges,
+    smooth,
+    spline_from,
+    splines_edges,
+    through,
+    uniform,
+)
 from watchsim.geometry.primitives import TURN, Arc, Line
 
 RNG = np.random.default_rng(5)

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from watchsim.drawing.curves.dense_polygon import corners, smooth
+from watchsim.drawing.splines import corners, smooth
 
 
 @pytest.mark.parametrize("hand", [1.0, -1.0])

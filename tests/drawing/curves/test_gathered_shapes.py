@@ -4,12 +4,18 @@ from __future__ import annotations
 
 import pytest
 
-from watchsim.drawing.curves.curves_to_arcs import _count, follow
-from watchsim.drawing.curves.plane_projection import (
+from watchsim.drawing.curves import _count, follow
+from watchsim.drawing.projection import (
     MOST_STROKES,
     UNFOLDED,
+    Conic,
+    Dot,
     Gathering,
+    Shape,
+    Spline,
+    Straight,
     TooLarge,
+    circle,
     corner,
     emit,
     kind_of,
@@ -17,9 +23,8 @@ from watchsim.drawing.curves.plane_projection import (
     reach,
     tilted,
 )
-from watchsim.drawing.curves.plane_shapes import Conic, Dot, Shape, Spline, Straight, circle
-from watchsim.drawing.curves.spline_copies import SAME
-from watchsim.geometry.fitting.fit import Fit
+from watchsim.drawing.splines import SAME
+from watchsim.geometry.fitting import Fit
 from watchsim.geometry.primitives import TURN, Arc, Line
 
 MM = 1e-3

@@ -7,8 +7,24 @@ import math
 import numpy as np
 import pytest
 
-from watchsim.drawing.curves.affine import Affine, cosine_sine, cross, object_plane, shifted, turned_scaled, unit
-from watchsim.drawing.curves.plane_shapes import Conic, Dot, Shape, Spline, Straight, bulge, edge_on, exact_edge, forward
+from watchsim.drawing.projection import (
+    Affine,
+    Conic,
+    Dot,
+    Shape,
+    Spline,
+    Straight,
+    bulge,
+    cosine_sine,
+    cross,
+    edge_on,
+    exact_edge,
+    forward,
+    object_plane,
+    shifted,
+    turned_scaled,
+    unit,
+)
 from watchsim.geometry.primitives import Arc, Line
 
 Triple = tuple[float, float, float]

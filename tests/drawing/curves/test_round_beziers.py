@@ -6,10 +6,8 @@ import math
 
 import pytest
 
-from watchsim.drawing.curves.affine import unit
-from watchsim.drawing.curves.bezier_to_arcs import circle_of
-from watchsim.drawing.curves.plane_projection import reach
-from watchsim.drawing.curves.plane_shapes import Conic, Spline, Straight
+from watchsim.drawing.curves import circle_of
+from watchsim.drawing.projection import Conic, Spline, Straight, reach, unit
 
 KAPPA = 4.0 / 3.0 * (math.sqrt(2.0) - 1.0)  # of the radius: the usual Béziers of a quarter
 

@@ -10,18 +10,8 @@ import numpy as np
 import pytest
 from scipy.interpolate import BSpline
 
-from watchsim.drawing.curves.bezier_to_arcs import (
-    LONGEST,
-    SAMPLES,
-    bezier_points,
-    circle_of,
-    elevated,
-    emit_row,
-    joined,
-    straightened,
-)
-from watchsim.drawing.curves.plane_projection import Gathering
-from watchsim.drawing.curves.plane_shapes import Spline, Straight
+from watchsim.drawing.curves import LONGEST, SAMPLES, bezier_points, circle_of, elevated, emit_row, joined, straightened
+from watchsim.drawing.projection import Gathering, Spline, Straight
 from watchsim.geometry.primitives import TURN, Arc
 
 RNG = np.random.default_rng(3)

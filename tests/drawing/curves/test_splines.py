@@ -11,13 +11,12 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-from watchsim.drawing.curves.spline_to_arcs import spline_from
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.dxf_records import DxfError
-from watchsim.geometry.loop import Loop
-from watchsim.geometry.polyline import polyline
+from watchsim.drawing.splines import spline_from
+from watchsim.geometry.loops import Loop, polyline
 from watchsim.geometry.primitives import TURN, Arc, Line
-from watchsim.geometry.solids.mass import area
+from watchsim.geometry.solids import area
 
 Reader = Callable[..., Drawing]
 

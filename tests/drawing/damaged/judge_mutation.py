@@ -10,8 +10,8 @@ from typing import Any
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.inspection import inspect_report, inspect_text
 from watchsim.drawing.read import FIT, read, read_content
-from watchsim.drawing.svg.svg_page import page_unit
-from watchsim.geometry.extent import total_length
+from watchsim.drawing.svg import page_unit
+from watchsim.geometry.loops import total_length
 
 
 def amount(drawing: Drawing) -> int:

@@ -16,7 +16,7 @@ from every_time import few
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.inspection import inspect_report, inspect_text
 from watchsim.drawing.read import read
-from watchsim.drawing.svg.xml_elements import DEEPEST, MOST_UNPACKED
+from watchsim.drawing.svg_elements import DEEPEST, MOST_UNPACKED
 
 Reader = Callable[..., Drawing]
 BOX = '<rect width="9" height="9"/>'

@@ -12,10 +12,9 @@ from ezdxf.math import ConstructionEllipse
 
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.dxf_records import decoded
-from watchsim.geometry.extent import extents
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop, extents
 from watchsim.geometry.primitives import TURN, Arc, Line
-from watchsim.geometry.solids.mass import area
+from watchsim.geometry.solids import area
 
 Reader = Callable[..., Drawing]
 MM = 1e-3

@@ -19,9 +19,9 @@ from ezdxf.document import Drawing as EzDrawing
 from scipy import constants as c
 
 from watchsim.drawing.drawing import Drawing
-from watchsim.drawing.length_units import INSUNITS
+from watchsim.drawing.findings import INSUNITS
 from watchsim.drawing.read import read
-from watchsim.geometry.extent import extents, total_length
+from watchsim.geometry.loops import extents, total_length
 
 Reader = Callable[..., Drawing]
 VERSIONS = ("R12", "R2000", "R2004", "R2007", "R2010", "R2013", "R2018")

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from watchsim.drawing.dxf.group_codes import COMMON, strange_codes
-from watchsim.drawing.dxf_records import Record
+from watchsim.drawing.dxf_records import COMMON, Record, strange_codes
 
 # As the reference tabulates them (DXF reference, section Entities), without those that all entities may have.
 REFERENCE = {

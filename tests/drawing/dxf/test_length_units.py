@@ -7,7 +7,7 @@ from pathlib import Path
 import dxf_text as d
 import pytest
 
-from watchsim.drawing.length_units import INSUNITS
+from watchsim.drawing.findings import INSUNITS
 from watchsim.drawing.read import read
 
 # DXF reference, HEADER section, $INSUNITS; in metres from their definitions.

@@ -11,7 +11,7 @@ from every_time import few
 from random_dxf import drawing
 
 from watchsim.drawing.drawing import Drawing
-from watchsim.geometry.extent import extents
+from watchsim.geometry.loops import extents
 
 FIT = 2e-9
 

@@ -9,9 +9,9 @@ import pytest
 
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.dxf_records import DxfError, Record, as_number, decoded, read_tags
-from watchsim.drawing.length_units import named_length
+from watchsim.drawing.findings import named_length
 from watchsim.drawing.read import SMALLEST, smallness, units_missing
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import TURN, Arc, Line
 
 WHOLE = "0\nSECTION\n2\nENTITIES\n0\nline\n8\nA\n5\n4f\n0\nENDSEC\n0\nEOF\n"

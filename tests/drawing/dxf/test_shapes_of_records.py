@@ -7,10 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from watchsim.drawing.curves.affine import IDENTITY
-from watchsim.drawing.curves.plane_shapes import Conic, Dot, Shape, Spline, Straight
-from watchsim.drawing.dxf.entities import READERS, heavyweight, insert, is_mesh, points_of, traced
+from watchsim.drawing.dxf import READERS, heavyweight, insert, is_mesh, points_of, traced
 from watchsim.drawing.dxf_records import DxfError, Record
+from watchsim.drawing.projection import IDENTITY, Conic, Dot, Shape, Spline, Straight
 from watchsim.geometry.primitives import TURN
 
 Tag = tuple[int, object]

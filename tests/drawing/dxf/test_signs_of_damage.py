@@ -8,8 +8,7 @@ import dxf_text as d
 import pytest
 
 from watchsim.drawing.drawing import Drawing
-from watchsim.drawing.dxf.damaged_records import odd_copies, odd_radius, strange_groups, swallowed
-from watchsim.drawing.dxf.dxf_file import read_dxf
+from watchsim.drawing.dxf import odd_copies, odd_radius, read_dxf, strange_groups, swallowed
 from watchsim.drawing.dxf_records import Record
 
 Tag = tuple[int, object]

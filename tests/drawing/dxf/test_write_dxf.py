@@ -12,12 +12,11 @@ from hypothesis import HealthCheck, given, settings
 from made_outlines import parts
 from same_outlines import compare, same_edge
 
-from watchsim.drawing.dxf.write_dxf import dxf_text
 from watchsim.drawing.read import read
-from watchsim.drawing.sheet import Sheet
-from watchsim.geometry.loop import Loop
+from watchsim.drawing.write import Sheet, dxf_text
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import TURN, Arc, Line
-from watchsim.geometry.solids.mass import section
+from watchsim.geometry.solids import section
 
 ROOT = Path(__file__).resolve().parents[3]
 

@@ -8,9 +8,9 @@ from itertools import product
 import numpy as np
 import pytest
 
-from watchsim.drawing.curves.plane_shapes import Conic, Straight
-from watchsim.drawing.svg.path_data import elliptic_arc
-from watchsim.drawing.svg.xml_elements import SvgError
+from watchsim.drawing.projection import Conic, Straight
+from watchsim.drawing.svg_elements import SvgError
+from watchsim.drawing.svg_shapes import elliptic_arc
 
 Point = tuple[float, float]
 FLAGS = list(product((False, True), repeat=2))

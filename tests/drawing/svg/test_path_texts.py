@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from watchsim.drawing.curves.plane_shapes import Conic, Shape, Spline, Straight
-from watchsim.drawing.svg.path_data import read_path
+from watchsim.drawing.projection import Conic, Shape, Spline, Straight
+from watchsim.drawing.svg_shapes import read_path
 
 Point = tuple[float, float]
 

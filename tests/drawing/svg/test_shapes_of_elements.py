@@ -9,13 +9,22 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from watchsim.drawing.curves.affine import IDENTITY, Affine
-from watchsim.drawing.curves.plane_shapes import Conic, Dot, Shape, Straight
-from watchsim.drawing.svg.element_shapes import READERS, Measures
-from watchsim.drawing.svg.number_text import diagonal, length, numbers, split_length
-from watchsim.drawing.svg.path_data import PathData
-from watchsim.drawing.svg.transforms import Box, fitted, placed, transform, view_box
-from watchsim.drawing.svg.xml_elements import SvgError
+from watchsim.drawing.projection import IDENTITY, Affine, Conic, Dot, Shape, Straight
+from watchsim.drawing.svg_elements import SvgError
+from watchsim.drawing.svg_shapes import (
+    READERS,
+    Box,
+    Measures,
+    PathData,
+    diagonal,
+    fitted,
+    length,
+    numbers,
+    placed,
+    split_length,
+    transform,
+    view_box,
+)
 from watchsim.geometry.primitives import TURN
 
 Point = tuple[float, float]

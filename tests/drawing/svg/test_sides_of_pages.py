@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from watchsim.drawing.svg.svg_page import page_unit, read_page
+from watchsim.drawing.svg import page_unit, read_page
 
 INCH = 0.0254
 PX = INCH / 96.0

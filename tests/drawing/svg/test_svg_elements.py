@@ -14,11 +14,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from watchsim.drawing.drawing import Drawing
-from watchsim.drawing.svg.transforms import Box, fitted, transform
-from watchsim.drawing.svg.xml_elements import SvgError
-from watchsim.geometry.extent import extents
+from watchsim.drawing.svg_elements import SvgError
+from watchsim.drawing.svg_shapes import Box, fitted, transform
+from watchsim.geometry.loops import extents
 from watchsim.geometry.primitives import Arc
-from watchsim.geometry.solids.mass import area
+from watchsim.geometry.solids import area
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from naive import svg_curve
@@ -160,7 +160,7 @@ def test_transformations_are_products_of_matrices(functions: list[tuple]) -> Non
 
 @given(st.lists(st.lists(FUNCTION, max_size=2), min_size=1, max_size=4))
 def test_groups_nest(levels: list[list[tuple]]) -> None:
-    from watchsim.drawing.svg.svg_file import read_svg
+    from watchsim.drawing.svg import read_svg
 
     content = '<path d="M1 2L30 4 20 25z"/>'
     for functions in reversed(levels):
@@ -217,7 +217,7 @@ TOOTH = '<path id="tooth" d="M1 2L30 4 20 25z"/>'
 
 @given(st.lists(FUNCTION, max_size=2), NUMBER, NUMBER)
 def test_use_is_a_translation_inside_its_transformation(functions: list[tuple], x: float, y: float) -> None:
-    from watchsim.drawing.svg.svg_file import read_svg
+    from watchsim.drawing.svg import read_svg
 
     used = f'<defs>{TOOTH}</defs><use href="#tooth" x="{x}" y="{y}" transform="{written(functions)}"/>'
     plain = f'<g transform="{written(functions)} translate({x} {y})">{TOOTH}</g>'

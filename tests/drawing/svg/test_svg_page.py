@@ -9,8 +9,8 @@ import svg_text as s
 
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.inspection import inspect_report
-from watchsim.drawing.svg.unread_elements import FOREIGN
-from watchsim.geometry.extent import extents
+from watchsim.drawing.svg import FOREIGN
+from watchsim.geometry.loops import extents
 from watchsim.geometry.primitives import Arc
 
 Reader = Callable[..., Drawing]

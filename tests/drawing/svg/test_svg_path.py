@@ -14,10 +14,10 @@ import svg_text as s
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from watchsim.drawing.curves.plane_shapes import Conic, Shape, Spline, Straight
 from watchsim.drawing.drawing import Drawing
-from watchsim.drawing.svg.path_data import elliptic_arc, read_path
-from watchsim.drawing.svg.xml_elements import SvgError
+from watchsim.drawing.projection import Conic, Shape, Spline, Straight
+from watchsim.drawing.svg_elements import SvgError
+from watchsim.drawing.svg_shapes import elliptic_arc, read_path
 from watchsim.geometry.primitives import Arc, Line
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
@@ -106,7 +106,7 @@ def test_every_way_of_writing_draws_the_same(path: list[tuple]) -> None:
 
 @given(commands(), st.booleans())
 def test_edges_lie_on_the_curve_and_the_curve_on_edges(path: list[tuple], compact: bool) -> None:
-    from watchsim.drawing.svg.svg_file import read_svg
+    from watchsim.drawing.svg import read_svg
 
     content = read_svg(s.svg(s.path(written(path, compact, compact))).encode(), None, 1e-6)
     assert not [finding for finding in content.findings if finding.severity == "error"]
@@ -241,7 +241,7 @@ def test_an_ellipse_of_cubics_and_a_semicircle_are_no_circle(read_svg: Reader) -
 @given(st.integers(3, 12), st.floats(0.5, 20.0))
 def test_smooth_rows_of_cubics_share_their_arcs(count: int, size: float) -> None:
     """A wave cut into many pieces needs no more arcs than the whole, and they join tangentially."""
-    from watchsim.drawing.svg.svg_file import read_svg
+    from watchsim.drawing.svg import read_svg
 
     p = np.array([(0.0, 0.0), (1.0, 2.0), (2.0, -2.0), (3.0, 0.0)]) * size
     d = f"M{p[0][0]} {p[0][1]}"

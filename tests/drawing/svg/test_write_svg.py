@@ -15,10 +15,10 @@ from made_outlines import parts
 from same_outlines import compare, same_edge
 
 from watchsim.drawing.read import read
-from watchsim.drawing.svg.write_svg import svg_text
-from watchsim.geometry.loop import Loop
+from watchsim.drawing.write import svg_text
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import TURN, Arc, Edge, Line, Point
-from watchsim.geometry.solids.mass import section
+from watchsim.geometry.solids import section
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from naive import svg_curve

@@ -7,11 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from watchsim.geometry.fitting.arc_chain import Legs, Trial, _abreast, _legs_at, _mirrored, _tilt, lay_chains
-from watchsim.geometry.fitting.biarc import ArcChain
-from watchsim.geometry.fitting.bundle import Bundle
-from watchsim.geometry.fitting.curve import Curve
-from watchsim.geometry.fitting.piece_layout import Demand, arcs_for, laid_out, shares
+from watchsim.geometry.biarcs import ArcChain, Bundle, Curve, Demand, arcs_for, laid_out, shares
+from watchsim.geometry.fitting import Legs, Trial, _abreast, _legs_at, _mirrored, _tilt, lay_chains
 
 PARABOLA = [(0.0, 0.0), (0.5, 0.0), (1.0, 1.0)]  # x = t, y = t²
 SLANT = [(0.0, 1.0), (1.5, 3.0), (3.0, 5.0)]  # x = 3 t, y = 1 + 4 t

@@ -6,10 +6,8 @@ import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
 
-from watchsim.geometry.fitting.bundle import Bundle
-from watchsim.geometry.fitting.curve import Curve
-from watchsim.geometry.fitting.fit import fit_arcs
-from watchsim.geometry.fitting.smooth import pauses, smooth_parts
+from watchsim.geometry.biarcs import Bundle, Curve
+from watchsim.geometry.fitting import fit_arcs, pauses, smooth_parts
 
 NEAR_ENDS = [0.001, 0.0071, 0.0156, 0.0157, 0.0312, 0.0313, 0.5, 0.9687, 0.9688, 0.9843, 0.9844, 0.9929, 0.999]
 

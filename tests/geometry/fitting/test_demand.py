@@ -7,10 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from watchsim.geometry.fitting.bundle import Bundle
-from watchsim.geometry.fitting.curve import Curve
-from watchsim.geometry.fitting.demand import corrected, first_demand, of_chosen
-from watchsim.geometry.fitting.piece_layout import Demand
+from watchsim.geometry.biarcs import Bundle, Curve, Demand, corrected, first_demand, of_chosen
 
 
 def cubics(*corners: tuple[float, float]) -> Curve:

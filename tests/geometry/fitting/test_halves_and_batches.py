@@ -8,13 +8,20 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from watchsim.geometry.fitting import fit as fitting
-from watchsim.geometry.fitting.biarc import ArcChain
-from watchsim.geometry.fitting.bundle import GLANCE, PAUSE, Bundle
-from watchsim.geometry.fitting.curve import Curve
-from watchsim.geometry.fitting.deviation import _interval_bounds
-from watchsim.geometry.fitting.fewest import BRISK, THOROUGH, Effort
-from watchsim.geometry.fitting.fit import Fit, _end_to_end, _extent, _follow, _one_arc_each, batches, fit_all
+from watchsim.geometry import fitting as fitting
+from watchsim.geometry.biarcs import GLANCE, PAUSE, ArcChain, Bundle, Curve, _interval_bounds
+from watchsim.geometry.fitting import (
+    BRISK,
+    THOROUGH,
+    Effort,
+    Fit,
+    _end_to_end,
+    _extent,
+    _follow,
+    _one_arc_each,
+    batches,
+    fit_all,
+)
 from watchsim.geometry.primitives import Line
 
 Corners = list[tuple[float, float]]
@@ -45,7 +52,7 @@ def test_effort_is_spared_where_there_are_many_spans(monkeypatch: pytest.MonkeyP
         seen.append((len(curves), tolerance.tolist(), chosen, depth))
         return [Fit((), 1.0 + k) for k in range(len(curves))]
 
-    monkeypatch.setattr(fitting, "MANY", many)
+    monkeypatch.setattr(fitting, "MANY_FIT", many)
     monkeypatch.setattr(fitting, "_follow", follow)
     monkeypatch.setattr(fitting, "smooth_parts", lambda curves, _: [curves[1:] * 2, curves[:1]])
     both = [STRAIGHT, curve_of([(0, 0), (1, 0), (2, 1)], [(2, 1), (3, 2), (3, 3)])]

@@ -8,9 +8,9 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from watchsim.geometry.fitting.curve import Curve
-from watchsim.geometry.fitting.recognise import parts_of, whole_circle
+from watchsim.geometry.biarcs import Curve
 from watchsim.geometry.primitives import TURN, Arc, Line
+from watchsim.geometry.recognition import parts_of, whole_circle
 
 
 def bow(sweep: float, radius: float, stretch: float = 1.0) -> list[tuple[float, float, float]]:

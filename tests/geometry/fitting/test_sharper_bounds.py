@@ -5,10 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from watchsim.geometry.fitting.biarc import ArcChain
-from watchsim.geometry.fitting.bundle import Bundle
-from watchsim.geometry.fitting.curve import Curve
-from watchsim.geometry.fitting.deviation import deviations
+from watchsim.geometry.biarcs import ArcChain, Bundle, Curve, deviations
 
 
 def bounds(heaviest: float, *beside: float, group: list[int]) -> list[float]:

@@ -8,10 +8,9 @@ import numpy as np
 import pytest
 from scipy.interpolate import BPoly
 
-from watchsim.geometry.fitting import smooth
-from watchsim.geometry.fitting.bundle import PAUSE, Bundle
-from watchsim.geometry.fitting.curve import Curve
-from watchsim.geometry.fitting.smooth import bend, cut_at, jumps, pauses, slowest, smooth_parts
+from watchsim.geometry import fitting as smooth
+from watchsim.geometry.biarcs import PAUSE, Bundle, Curve
+from watchsim.geometry.fitting import bend, cut_at, jumps, pauses, slowest, smooth_parts
 
 Corners = list[list[tuple[float, float]]]
 

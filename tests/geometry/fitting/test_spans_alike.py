@@ -8,8 +8,9 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from watchsim.geometry.fitting.curve import Curve
-from watchsim.geometry.fitting.recognise import (
+from watchsim.geometry.biarcs import Curve
+from watchsim.geometry.primitives import TURN, Arc, Line
+from watchsim.geometry.recognition import (
     _apart,
     _circumcentres,
     _continues,
@@ -20,7 +21,6 @@ from watchsim.geometry.fitting.recognise import (
     parts_of,
     whole_circle,
 )
-from watchsim.geometry.primitives import TURN, Arc, Line
 
 LIMIT = 0.05 * 1e-7  # so far circles may lie apart for a tolerance of 0.1 µm
 

@@ -9,8 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from watchsim.geometry.coil import Coil
-from watchsim.geometry.solids.hairspring import Spiral
+from watchsim.geometry.hairspring import Coil, Spiral
 
 COIL = Coil(0.55e-3, 2.8e-3, 13.0, math.radians(70.0), 3e-5)
 FINE = 20_000

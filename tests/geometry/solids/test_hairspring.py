@@ -9,9 +9,9 @@ import mpmath
 import numpy as np
 import pytest
 
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.hairspring import Spiral, drawn_strip, ribbon, spiral_of_length
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Line
-from watchsim.geometry.solids.hairspring import Spiral, drawn_strip, ribbon, spiral_of_length
 
 SPRING = Spiral(0.6e-3, 2.6e-3, 12.0)
 

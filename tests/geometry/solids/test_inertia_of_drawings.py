@@ -10,9 +10,9 @@ import pytest
 from strangers import PIN_LEVER, marks
 
 from watchsim.drawing.read import read
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import TURN, Arc, Line
-from watchsim.geometry.solids.mass import section
+from watchsim.geometry.solids import section
 
 ROOT = Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "scripts" / "checks"))

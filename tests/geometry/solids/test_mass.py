@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import TURN, Arc, Edge, Line, Point
-from watchsim.geometry.solids.mass import area, mass_properties, section
+from watchsim.geometry.solids import area, mass_properties, section
 
 TINY = 1e-12
 

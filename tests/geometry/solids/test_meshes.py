@@ -12,11 +12,10 @@ import trimesh
 from strangers import PIN_LEVER, marks
 
 from watchsim.drawing.read import read
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
+from watchsim.geometry.meshes import Piece, Placed, glb, laid, plate, revolved, stl, turned_about
 from watchsim.geometry.primitives import TURN, Arc, Line
-from watchsim.geometry.solids.mass import mass_properties
-from watchsim.geometry.solids.meshes import Piece, Placed, glb, laid, plate, revolved, stl, turned_about
-from watchsim.geometry.solids.revolution import turned
+from watchsim.geometry.solids import mass_properties, turned
 
 ROOT = Path(__file__).resolve().parents[3]
 WHEELS = {"club_teeth": ROOT / "profiles/swiss_lever/escape_wheel.dxf", "pin_lever": PIN_LEVER / "siconos_pin_lever_wheel.dxf"}

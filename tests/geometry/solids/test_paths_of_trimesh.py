@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from trimesh.path import Path2D, entities
 
-from watchsim.drawing.profile import Profile
-from watchsim.geometry.loop import Loop
+from watchsim.drawing.drawing import Profile
+from watchsim.geometry.loops import Loop
+from watchsim.geometry.meshes import _arc, _pose, edges_of, path2d
 from watchsim.geometry.primitives import TURN, Arc, Edge, Line
-from watchsim.geometry.solids.meshes import _arc, _pose, edges_of, path2d
 
 SLOT = (
     Line(0.0, 0.0, 4e-3, 0.0),

@@ -12,9 +12,9 @@ import pytest
 import trimesh
 from trimesh.path import entities
 
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
+from watchsim.geometry.meshes import Piece, Placed, edges_of, glb, laid, path2d, plate, revolved, turned_about, united
 from watchsim.geometry.primitives import TURN, Arc, Line
-from watchsim.geometry.solids.meshes import Piece, Placed, edges_of, glb, laid, path2d, plate, revolved, turned_about, united
 
 CORNERS = np.array([(0.3, 0.7, 1.1), (2.0, -0.4, 0.9), (-0.6, 1.5, 2.3), (0.2, 0.1, -3.0)])
 

@@ -12,9 +12,9 @@ import trimesh
 from hypothesis import given
 from hypothesis import strategies as st
 
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import TURN, Arc, Line, Point
-from watchsim.geometry.solids.revolution import Turned, reach, turned, upright
+from watchsim.geometry.solids import Turned, reach, turned, upright
 
 X_AXIS = ((0.0, 0.0), (1.0, 0.0))
 TINY = 1e-12

@@ -6,11 +6,10 @@ import math
 
 import pytest
 
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.hairspring import CHORDS, SHARE, Spiral, drawn_strip, ribbon, spiral_of_length
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Line
-from watchsim.geometry.solids.hairspring import CHORDS, SHARE, Spiral, drawn_strip, ribbon, spiral_of_length
-from watchsim.geometry.solids.mass import Section, area, mass_properties, section
-from watchsim.geometry.solids.revolution import reach, turned, upright
+from watchsim.geometry.solids import Section, area, mass_properties, reach, section, turned, upright
 
 
 def polygon(*corners: tuple[float, float], closed: bool = True) -> Loop:

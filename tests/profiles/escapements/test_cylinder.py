@@ -12,9 +12,8 @@ from profiles.running import check_running, of_profile, stepping_errors
 
 import watchsim as ws
 from watchsim import designs
-from watchsim.construction.cylinder.cylinder_dimensions import Cylinder
-from watchsim.construction.cylinder.cylinder_points import Shell, shell
-from watchsim.construction.known import design
+from watchsim.construction.cylinder import Cylinder, Shell, shell
+from watchsim.construction.registry import design
 
 
 def test_twenty_seconds():

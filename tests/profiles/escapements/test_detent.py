@@ -9,11 +9,10 @@ import pytest
 
 import watchsim as ws
 from watchsim import designs
-from watchsim.analysis.timeline.shown_beats import shown_beats
-from watchsim.analysis.timing.phases import phases
-from watchsim.construction import known
-from watchsim.construction.detent.detent_dimensions import Detent
-from watchsim.construction.detent.detent_points import Points
+from watchsim.analysis.phases import phases
+from watchsim.analysis.timeline import shown_beats
+from watchsim.construction import registry as known
+from watchsim.construction.detent import Detent, Points
 from watchsim.scene.roles import Roles, roles
 
 DETENT = known.design("detent")

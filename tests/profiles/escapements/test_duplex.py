@@ -10,9 +10,8 @@ from profiles.running import check_running, of_profile, stepping_errors
 
 import watchsim as ws
 from watchsim import designs
-from watchsim.construction.duplex.duplex_dimensions import Duplex
-from watchsim.construction.duplex.duplex_points import DuplexPoints
-from watchsim.construction.known import design
+from watchsim.construction.duplex import Duplex, DuplexPoints
+from watchsim.construction.registry import design
 
 
 def test_twenty_seconds():

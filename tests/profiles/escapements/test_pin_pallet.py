@@ -10,9 +10,9 @@ from profiles.running import check_running, of_profile, stepping_errors
 
 import watchsim as ws
 from watchsim import designs
-from watchsim.construction.known import design
+from watchsim.construction.registry import design
+from watchsim.escapement.function_report import judgements
 from watchsim.escapement.measure import measure
-from watchsim.escapement.rules import judgements
 
 
 @pytest.mark.parametrize(

@@ -12,9 +12,8 @@ from scipy.special import ellipk
 
 import watchsim as ws
 from watchsim import designs
-from watchsim.construction.known import design
-from watchsim.construction.pin_wheel.pin_wheel_dimensions import PinWheel
-from watchsim.construction.pin_wheel.pin_wheel_points import PinAnchor
+from watchsim.construction.pin_wheel import PinAnchor, PinWheel
+from watchsim.construction.registry import design
 
 
 def test_a_minute():

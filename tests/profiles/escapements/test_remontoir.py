@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 
 import watchsim as ws
 from watchsim.scene.scene import Scene
-from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.simulation.trajectory import Trajectory
 
 STIFFNESS, TRAIN = 0.03e-6, 12e-6  # N·m/rad, N·m at the stop wheel
 ARM, OFF, LOCK, PLAY = 4.5, 0.18, math.radians(0.3), 0.002  # mm: lever to axis, eccentricity, half of what the slot is wider

@@ -11,9 +11,8 @@ from scipy.optimize import brentq
 
 import watchsim as ws
 from watchsim import designs
-from watchsim.construction.verge.verge_dimensions import Verge
-from watchsim.construction.verge.verge_proportions import depth, pitch
-from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.construction.verge import Verge, depth, pitch
+from watchsim.simulation.trajectory import Trajectory
 
 # Flags close together, long, and let go after a small turn: the torque on the verge is then nearly constant.
 NARROW = {"flag_angle": "20°", "lift": "2°", "drop": "0.02 mm", "friction": 0.0, "wheel_inertia": "1 g·cm²"}

@@ -8,7 +8,7 @@ import pytest
 from render.figures.read_back import faults, width_mm
 
 import watchsim as ws
-from watchsim.commands.common.plot_kinds import KINDS, Request
+from watchsim.commands.pictures import KINDS, Request
 
 PROFILES = sorted(path.name for path in Path(str(ws.profiles_dir())).iterdir() if (path / "scene.toml").is_file())
 WITHOUT_BEATS = {

@@ -14,20 +14,18 @@ from matplotlib.patches import Rectangle
 from render.figures.read_back import area_of, faults, named, svg_curve, width_mm
 
 import watchsim as ws
-from watchsim.analysis.beat_tables import phases_csv
 from watchsim.analysis.energy import energy_shares
-from watchsim.analysis.timeline.shown_beats import shown_beats
-from watchsim.analysis.timeline.timeline_table import title
-from watchsim.geometry.loop import Loop
+from watchsim.analysis.headlines import phases_csv
+from watchsim.analysis.timeline import shown_beats, title
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Line
-from watchsim.render.figures.beat import force_plot, key_instants
-from watchsim.render.figures.beat.force_curves import Curves
-from watchsim.render.figures.beat.force_plot import left_out
-from watchsim.render.figures.beat.torque_curve import pushes, torque_on
-from watchsim.render.figures.passing_phases import passing
-from watchsim.render.frame.marks.readouts import clock
-from watchsim.scene.body import Body
-from watchsim.scene.scene import Scene
+from watchsim.render import force_plot
+from watchsim.render import timeline_plot as key_instants
+from watchsim.render.force_plot import Curves, left_out
+from watchsim.render.marks import clock
+from watchsim.render.style import passing
+from watchsim.render.torque_plot import pushes, torque_on
+from watchsim.scene.scene import Body, Scene
 
 
 @pytest.fixture(scope="module")
@@ -62,7 +60,7 @@ def test_every_plot_is_as_wide_as_asked_and_cuts_no_word(run: ws.Trajectory, kin
 
 @pytest.mark.parametrize("kind", few(PLOTS, lambda kind: kind in ("timeline", "energy")))
 def test_every_plot_fills_a_page_and_is_written_as_vectors(run: ws.Trajectory, kind: str, tmp_path) -> None:
-    from watchsim.render.figures.figure_style import save
+    from watchsim.render.style import save
 
     figure = PLOTS[kind](run, width=170.0)
     assert width_mm(figure) == pytest.approx(170.0)
@@ -145,7 +143,7 @@ def test_forces_are_those_of_the_contacts(run: ws.Trajectory) -> None:
 
 
 def test_a_window_with_too_many_instants_is_refused(run: ws.Trajectory, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("watchsim.render.figures.beat.force_curves.MOST", 300)
+    monkeypatch.setattr("watchsim.render.force_plot.MOST", 300)
     with pytest.raises(ValueError, match="choose a shorter window"):
         ws.plot_forces(run, window=(0.1, 0.9))
 

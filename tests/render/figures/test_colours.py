@@ -6,8 +6,8 @@ import pytest
 from render.figures.colour_vision import VISIONS, least_difference
 
 import watchsim as ws
-from watchsim.render.figures.figure_style import SERIES
 from watchsim.render.palette import PHASE_LINES, PHASES, looks
+from watchsim.render.style import SERIES
 
 
 def test_the_measure_knows_what_is_confused() -> None:

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from watchsim.render.figures.column_extremes import COLUMNS, bands, distinct, reduced
+from watchsim.render.rows import COLUMNS, bands, distinct, reduced
 
 Areas = Sequence[tuple[np.ndarray, np.ndarray, np.ndarray]]  # x, lower and upper edge
 

@@ -15,10 +15,10 @@ from every_time import few
 from matplotlib.colors import rgb_to_hsv, to_rgb
 from render.fake_runs import disc_run, slide_run, watch_run
 
-from watchsim.render.figures.kinematics_plot import Kinematics, plot_kinematics, write_png
-from watchsim.render.frame.filled_parts import parts
-from watchsim.render.frame.marks.readouts import clock
+from watchsim.render.kinematics_plot import Kinematics, plot_kinematics, write_png
+from watchsim.render.marks import clock
 from watchsim.render.palette import looks
+from watchsim.render.parts import parts
 
 
 def curves(figure):

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from matplotlib.figure import Figure
 
-from watchsim.render.figures.speed_plot import COLOURS, MARKS, NAMES, plot_speed
+from watchsim.render.phase_bands import COLOURS, MARKS, NAMES, plot_speed
 
 
 def row(scene: str, method: str, time: float, error: float, note: str = "") -> dict[str, object]:

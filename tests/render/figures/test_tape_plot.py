@@ -8,10 +8,10 @@ from analysis.made_beats import PERIOD, PIN, balance_only, steady_swings
 from analysis.made_faults import swiss
 from render.figures.read_back import faults
 
-from watchsim.analysis.tape import tape
-from watchsim.render.figures.tape_plot import PAPER, plot_tape
-from watchsim.simulation.event_kinds import EventKind
+from watchsim.analysis.timegrapher import tape
+from watchsim.render.timing_plot import PAPER, plot_tape
 from watchsim.simulation.simulate import simulate
+from watchsim.simulation.state import EventKind
 
 
 def ticking(period: float, late: float = 0.0, count: int = 80):

@@ -11,8 +11,8 @@ from render.fake_runs import watch_run
 
 from watchsim.render import keyframes as module
 from watchsim.render.keyframes import _track, keyframes
-from watchsim.render.movies.busy_stretches import busy
-from watchsim.simulation.event_kinds import EventKind
+from watchsim.render.movie import busy
+from watchsim.simulation.state import EventKind
 
 T = np.array([2.0, 2.1, 2.5, 2.6, 3.3, 3.4, 3.9, 4.4, 5.0])  # s, the fifth of which bulges
 ALONG = ((T - 2.0) / 3.0)[:, None]

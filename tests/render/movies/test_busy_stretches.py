@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from watchsim.render.movies.busy_stretches import _merged, busy
-from watchsim.simulation.event_kinds import EVENT_DTYPE, EventKind
+from watchsim.render.movie import _merged, busy
+from watchsim.simulation.state import EVENT_DTYPE, EventKind
 
 
 def phases(*spans: tuple[str, float, float]) -> Any:

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from watchsim.render.movies import encoder
-from watchsim.render.movies.encoder import _command, _run, check_path, encode
+from watchsim.render import encoder
+from watchsim.render.encoder import _command, _run, check_path, encode
 
 FRAMES = [np.random.default_rng(k).integers(0, 256, (90, 70, 4), np.uint8) for k in range(5)]
 

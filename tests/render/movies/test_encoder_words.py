@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from watchsim.render.movies.encoder import _reason
+from watchsim.render.encoder import _reason
 
 
 @pytest.mark.parametrize(

@@ -12,12 +12,13 @@ from every_time import few
 from matplotlib.colors import to_rgb
 from render.fake_runs import disc_run, slide_run, watch_run
 
-from watchsim.render.frame.pose_history import poses
-from watchsim.render.frame.stage import Stage
-from watchsim.render.movies import encoder, run_movie
-from watchsim.render.movies.gif_colours import shared_palette
-from watchsim.render.movies.run_movie import frame, movie
+from watchsim.render import encoder
+from watchsim.render import movie as run_movie
+from watchsim.render.encoder import shared_palette
+from watchsim.render.movie import frame, movie
 from watchsim.render.palette import BACKGROUND, BLUED, BRASS, INK, NIGHT, RUBY
+from watchsim.render.stage import Stage
+from watchsim.render.view import poses
 
 SMALL = (480, 270)
 

@@ -12,18 +12,15 @@ from render.fake_runs import disc_run, slide_run, watch_run
 from shapely import LineString, Point
 
 import watchsim as ws
-from watchsim.analysis.contact_forces import forces
-from watchsim.analysis.timeline.shown_beats import shown_beats
-from watchsim.geometry.polyline import polyline
-from watchsim.render.frame.marks.extras import Extras
-from watchsim.render.frame.marks.force_arrows import ForceArrows, arrow_path
-from watchsim.render.frame.marks.insets import beside, insets
-from watchsim.render.frame.marks.pallet_stones import PalletStones
-from watchsim.render.frame.marks.readouts import changing_speed_text
-from watchsim.render.frame.pose_history import poses
-from watchsim.render.frame.view import Frame
-from watchsim.render.movies.run_movie import frame, movie
+from watchsim.analysis.forces import forces
+from watchsim.analysis.timeline import shown_beats
+from watchsim.geometry.loops import polyline
+from watchsim.render.insets import beside, insets
+from watchsim.render.marks import ForceArrows, PalletStones, arrow_path, changing_speed_text
+from watchsim.render.movie import frame, movie
 from watchsim.render.palette import CONTACT, RUBY
+from watchsim.render.stage import Extras
+from watchsim.render.view import Frame, poses
 
 SIZES = ((1280, 720), (720, 1280), (480, 480))
 BOX = Frame(800.0, 100.0, 200.0, 300.0)
@@ -149,7 +146,7 @@ def test_arrows_are_as_long_as_their_forces():
 
 
 def test_phases_are_told_by_name_only_while_they_last():
-    from watchsim.analysis.timing.phases import Phase
+    from watchsim.analysis.phases import Phase
 
     still = (0.0, 0.0, 0.0)
     told = Extras(phases=(Phase(1, "unlock", 0.1, 0.2, still, still), Phase(1, "drop", 0.3, 0.4, still, still)))

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from render.fake_runs import watch_run
 
-from watchsim.render.movies import run_movie as module
-from watchsim.render.movies.run_movie import _plan, frame, movie
-from watchsim.render.picture_style import DARK, LIGHT
+from watchsim.render import movie as module
+from watchsim.render.movie import _plan, frame, movie
+from watchsim.render.palette import DARK, LIGHT
 
 ARROWS = SimpleNamespace(largest=3.5, round_force=2.0)
 
@@ -67,7 +67,7 @@ def made(monkeypatch: pytest.MonkeyPatch) -> Made:
     }.items():
         monkeypatch.setattr(module, name, value)
     monkeypatch.setattr(module, "ContactMarks", lambda run: "rings")
-    monkeypatch.setattr(module, "named_phases", lambda run: ["unlock", "impulse"])
+    monkeypatch.setattr(module, "phases", lambda run: ["unlock", "impulse"])
     monkeypatch.setattr(module, "strip_body", lambda run, asked: asked or "oscillator")
     monkeypatch.setattr(module, "soundtrack", lambda run, plan: ("heard", len(plan.times)))
     monkeypatch.setattr(module, "fitting", lambda run, span, extras, zoom, gif, turn: ((600, 601 + gif), 0.25))

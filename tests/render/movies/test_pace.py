@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from watchsim.render.movies.pace import MOST_FRAMES, adaptive, even
+from watchsim.render.movie import MOST_FRAMES, adaptive, even
 
 BEAT = ((0.1, 0.106), (0.225, 0.231), (0.35, 0.356))
 

@@ -11,12 +11,11 @@ from every_time import few
 from imageio_ffmpeg import get_ffmpeg_exe
 from render.fake_runs import watch_run
 
-from watchsim.analysis.sound.bursts import SAMPLES
+from watchsim.analysis.sound import SAMPLES
 from watchsim.commands.movie import parse_speed
-from watchsim.render.movies.busy_stretches import busy
-from watchsim.render.movies.pace import adaptive
-from watchsim.render.movies.run_movie import movie
-from watchsim.simulation.record.trajectory import EVENT_DTYPE, EventKind, Trajectory
+from watchsim.render.movie import adaptive, busy, movie
+from watchsim.simulation.state import EVENT_DTYPE, EventKind
+from watchsim.simulation.trajectory import Trajectory
 
 BLOWS = (0.31, 0.52, 0.548, 0.9)
 RING = 0.004  # s: a blow has died away

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from watchsim.render.frame.marks.readouts import speed_text
-from watchsim.render.frame.pose_history import placed
+from watchsim.render.marks import speed_text
+from watchsim.render.view import placed
 
 
 @pytest.mark.parametrize(

@@ -9,10 +9,9 @@ import pytest
 
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.findings import Finding
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import TURN, Arc, Line
-from watchsim.render.stills.drawing_picture import COLOURS, draw_drawing, picture
-from watchsim.render.stills.fault_circles import CIRCLED, FAULT
+from watchsim.render.drawing_picture import CIRCLED, COLOURS, FAULT, draw_drawing, picture
 
 RING = (Loop((Arc(0, 0, 2e-3, 0, TURN),), "TEETH"), Loop((Arc(0, 0, 1e-3, 0, -TURN),), "TEETH", hole=True))
 FAULTY = Finding("open-outline", "error", "open", "", "TEETH", 2.0, 0.0)

@@ -9,7 +9,7 @@ import pytest
 
 from watchsim.drawing.findings import Finding
 from watchsim.drawing.read import read
-from watchsim.render.stills.fault_circles import CIRCLED, LINE, best_box, in_ranges, label, places, shared
+from watchsim.render.drawing_picture import CIRCLED, LINE, best_box, in_ranges, label, places, shared
 
 FRAME = np.array([0.0, 0.0, 500.0, 500.0])
 

@@ -9,12 +9,12 @@ import numpy as np
 from matplotlib.colors import to_rgb
 
 import watchsim as ws
+from watchsim.mechanism.check import modelled_pairs
 from watchsim.mechanism.compile import compile_scene
-from watchsim.mechanism.count_pairs import modelled_pairs
-from watchsim.model.records import LINE
-from watchsim.render.frame.pose_matrix import pose_matrix
-from watchsim.render.frame.stage import Stage
-from watchsim.render.stills import still as module
+from watchsim.model import LINE
+from watchsim.render import still as module
+from watchsim.render.parts import pose_matrix
+from watchsim.render.stage import Stage
 
 LEVER = Path(__file__).resolve().parents[3] / "profiles" / "bench_lever" / "scene.toml"
 

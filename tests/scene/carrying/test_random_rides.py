@@ -13,9 +13,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from watchsim.scene.body import Body
-from watchsim.scene.carriers import MOVEMENT, carried_last, is_still, rides, start_poses, weigh
-from watchsim.scene.scene import Scene
+from watchsim.scene.scene import Body, Scene
+from watchsim.scene.trains import MOVEMENT, carried_last, is_still, rides, start_poses, weigh
 
 Pose = tuple[complex, float]  # of a frame in the movement
 

@@ -8,8 +8,8 @@ import math
 import pytest
 from made_scenes import circle, drawing, square
 
-from watchsim.mechanism.static_check import check_report, check_text
-from watchsim.scene.file.load import load
+from watchsim.mechanism.check import check_report, check_text
+from watchsim.scene.load import load
 
 PLATE = 'layer = "LEVER"\nthickness = "0.2 mm"\ndensity = "8 g/cm³"\n'
 HEAD = 'drawing = "lever.dxf"\nlayers = ["LEVER"]\npivot = "PIVOT"\n'

@@ -7,9 +7,9 @@ from typing import Any
 
 import pytest
 
-from watchsim.drawing.bores import Lie
-from watchsim.geometry.loop import Loop
-from watchsim.scene.file.readers.bore_notices import _doubtful
+from watchsim.drawing.circles import Lie
+from watchsim.geometry.loops import Loop
+from watchsim.scene.read_bores import _doubtful
 
 
 @pytest.mark.parametrize(

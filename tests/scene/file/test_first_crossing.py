@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import shapely
 
-from watchsim.scene.file.outlines.written_shapes import first_crossing, signed_area
+from watchsim.scene.outlines import first_crossing, signed_area
 
 
 def folds_back(points: list[tuple[int, int]]) -> bool:

@@ -7,12 +7,9 @@ from pathlib import Path
 
 import watchsim as ws
 from watchsim.drawing.read import read as read_drawing
-from watchsim.scene.body import Body
-from watchsim.scene.file.load import load
-from watchsim.scene.force import Contact, Damping, Side, Torque
-from watchsim.scene.gearing import Gear
-from watchsim.scene.recording import Recording
-from watchsim.scene.scene import Scene
+from watchsim.scene.forces import Contact, Damping, Side, Torque
+from watchsim.scene.load import load
+from watchsim.scene.scene import Body, Gear, Recording, Scene
 
 NECESSARY = """
 [scene]

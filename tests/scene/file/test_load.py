@@ -5,10 +5,9 @@ import math
 import pytest
 from made_scenes import drawing, square
 
-from watchsim.scene.file.load import load
-from watchsim.scene.force import Side
-from watchsim.scene.recording import Recording
-from watchsim.scene.scene import Expectation
+from watchsim.scene.forces import Side
+from watchsim.scene.load import load
+from watchsim.scene.scene import Expectation, Recording
 
 
 def test_all_values_arrive_in_si(desk):

@@ -1,7 +1,6 @@
 """Are the lines of keys found in any TOML a person may write?"""
 
-from watchsim.scene.file.keys.locate import key_lines
-from watchsim.scene.file.parsed import tomllib
+from watchsim.scene.values import key_lines, tomllib
 
 TEXT = '''\
 # a comment with [brackets] and "quotes

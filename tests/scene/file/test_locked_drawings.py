@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from watchsim.scene.errors import SceneError
-from watchsim.scene.file.load import load
+from watchsim.scene.load import load
 
 
 def test_a_locked_scene_refuses_drawings_that_have_changed(tmp_path: Path) -> None:

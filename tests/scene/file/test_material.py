@@ -10,7 +10,7 @@ import pytest
 from watchsim.geometry.primitives import Arc, Line
 from watchsim.mechanism.overlap import overlaps
 from watchsim.scene.errors import SceneError
-from watchsim.scene.file.load import load
+from watchsim.scene.load import load
 from watchsim.scene.scene import Scene
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "drawing"))

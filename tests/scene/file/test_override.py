@@ -9,9 +9,7 @@ from hypothesis import strategies as st
 from made_scenes import drawing, square
 
 from watchsim.scene.errors import SceneError
-from watchsim.scene.file.load import load
-from watchsim.scene.file.override import assignments
-from watchsim.scene.file.read_scene import changed
+from watchsim.scene.load import assignments, changed, load
 from watchsim.scene.scene import Scene
 
 

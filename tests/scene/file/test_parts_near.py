@@ -6,9 +6,9 @@ import math
 
 import pytest
 
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Line
-from watchsim.scene.file.outlines.parts_near import lines_near, part_near, parts_of
+from watchsim.scene.placing import lines_near, part_near, parts_of
 
 
 def square(x: float, y: float, half: float, hole: bool = False) -> Loop:

@@ -11,16 +11,16 @@ from hypothesis import strategies as st
 from made_scenes import circle, drawing, square
 
 from watchsim.drawing.findings import Finding
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import TURN, Arc, Line
-from watchsim.results.provenance import lock_text
+from watchsim.results.folder import lock_text
 from watchsim.scene.errors import Faults, SceneError
-from watchsim.scene.file.keys.key_values import Table
-from watchsim.scene.file.keys.schema import BODY
-from watchsim.scene.file.load import load
-from watchsim.scene.file.outlines.body_outlines import Outlines
-from watchsim.scene.file.readers.read_solids import read_solids
-from watchsim.scene.solid import Weight
+from watchsim.scene.keys import BODY
+from watchsim.scene.load import load
+from watchsim.scene.outlines import Outlines
+from watchsim.scene.read_solids import read_solids
+from watchsim.scene.solids import Weight
+from watchsim.scene.values import Table
 
 RHO, HEIGHT = 7850.0, 0.2e-3
 PLATE = 'layer = "LEVER"\nthickness = "0.2 mm"\ndensity = "7.85 g/cm³"\n'

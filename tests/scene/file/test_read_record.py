@@ -3,10 +3,10 @@
 import pytest
 
 from watchsim.scene.errors import Faults
-from watchsim.scene.file.keys.key_values import Table
-from watchsim.scene.file.keys.schema import RUN
-from watchsim.scene.file.readers.read_record import read_record
-from watchsim.scene.recording import Recording, as_recording
+from watchsim.scene.keys import RUN
+from watchsim.scene.read_settings import read_record
+from watchsim.scene.scene import Recording, as_recording
+from watchsim.scene.values import Table
 
 WINDOWS = ((179.0, 180.0), (1.0, 2.0))
 

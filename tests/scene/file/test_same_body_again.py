@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Line
+from watchsim.scene.designed import OUTLINE, _over, designed
 from watchsim.scene.errors import Faults, SceneError
-from watchsim.scene.file.designed import designed
-from watchsim.scene.file.merge import OUTLINE, SHAPES, _over
-from watchsim.scene.file.outlines.adjust import _centre
+from watchsim.scene.keys import SHAPES
+from watchsim.scene.placing import _centre
 
 BODY = {key: key for key in (*OUTLINE, "inertia", "mass", "angle", "motion")}
 

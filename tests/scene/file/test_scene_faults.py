@@ -4,10 +4,10 @@ import pytest
 from made_scenes import drawing, square
 
 from watchsim.drawing.findings import Finding
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Line
 from watchsim.scene.errors import SceneError
-from watchsim.scene.file.load import load
+from watchsim.scene.load import load
 
 POLYGON = 'polygon = [["-1 mm", "0 mm"], ["1 mm", "0 mm"], ["0 mm", "3 mm"]]'
 SOLID = '[[bodies.wheel.solids]]\nlayer = "TEETH"\nthickness = "0.12 mm"\ndensity = "7.85 g/cm³"\n'
@@ -249,7 +249,7 @@ def test_a_drawing_without_units_is_refused_whatever_the_layers(desk, good):
 
 
 def test_units_the_reader_does_not_know(desk, good, monkeypatch):
-    from watchsim.scene.file.outlines import body_outlines
+    from watchsim.scene import outlines as body_outlines
 
     def broken(*_):
         raise ValueError('"furlong" is not a unit known here')

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from watchsim.scene.file.keys.schema import ADJUST, SOLID, key_at
+from watchsim.scene.keys import ADJUST, SOLID, key_at
 
 
 @pytest.mark.parametrize(

@@ -10,11 +10,11 @@ import pytest
 from made_scenes import circle, drawing, square
 
 from watchsim.drawing.findings import Finding
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Line
-from watchsim.mechanism.static_check import check_report, check_text
+from watchsim.mechanism.check import check_report, check_text
 from watchsim.scene.errors import SceneError
-from watchsim.scene.file.load import load
+from watchsim.scene.load import load
 
 BODY = '[bodies.balance]\ndrawing = "balance.dxf"\nlayers = ["ROLLER"]\npivot = "PIVOT"\n'
 PLATE = 'thickness = "0.2 mm"\ndensity = "8 g/cm³"\n'

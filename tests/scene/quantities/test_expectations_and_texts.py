@@ -10,10 +10,10 @@ import pytest
 import tomllib
 
 from watchsim.scene.errors import Fault, Faults, SceneError
-from watchsim.scene.file.keys.write_toml import toml_text, value_text
-from watchsim.scene.file.load import load
-from watchsim.scene.file.readers.read_settings import read_expectations
+from watchsim.scene.load import load
+from watchsim.scene.read_settings import read_expectations
 from watchsim.scene.scene import Expectation
+from watchsim.scene.write_toml import toml_text, value_text
 
 
 def expected(entries: Any) -> tuple[tuple[Expectation, ...], list[str]]:

@@ -4,14 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Line
-from watchsim.scene.body import Body
-from watchsim.scene.carriers import rides, start_poses, weigh
-from watchsim.scene.gear_trains import bonds, felt, goes_with, note_gears, reached, ungeared
-from watchsim.scene.gearing import Gear, Geared
-from watchsim.scene.prescribed import Prescribed
-from watchsim.scene.scene import Scene
+from watchsim.scene.scene import Body, Gear, Geared, Prescribed, Scene
+from watchsim.scene.trains import bonds, felt, goes_with, note_gears, reached, rides, start_poses, ungeared, weigh
 
 WHEEL = Body("wheel", inertia=7.0, angle=0.3)
 PINION = Body("pinion", inertia=0.5, angle=-0.2, geared=Geared("wheel", -4.0))

@@ -6,16 +6,23 @@ import math
 
 import pytest
 
-from watchsim.scene.body import Body
-from watchsim.scene.carriers import MOVEMENT, Ride, Weighed
-from watchsim.scene.force import Contact, Damping, LineSpring, Side, Spring, Torque
-from watchsim.scene.gear_trains import Bond
-from watchsim.scene.gearing import Gear
-from watchsim.scene.oscillation import Oscillator
-from watchsim.scene.prescribed import Prescribed
-from watchsim.scene.recording import ALL, EVENTS, EVERYTHING, STATISTICS, WHOLE_RUN, Recording, as_recording
-from watchsim.scene.scene import Scene
-from watchsim.scene.solid import Solid, Weight
+from watchsim.scene.forces import Contact, Damping, LineSpring, Side, Spring, Torque
+from watchsim.scene.roles import Oscillator
+from watchsim.scene.scene import (
+    ALL,
+    EVENTS,
+    EVERYTHING,
+    STATISTICS,
+    WHOLE_RUN,
+    Body,
+    Gear,
+    Prescribed,
+    Recording,
+    Scene,
+    as_recording,
+)
+from watchsim.scene.solids import Solid, Weight
+from watchsim.scene.trains import MOVEMENT, Bond, Ride, Weighed
 
 ZERO = (0.0, 0.0)
 

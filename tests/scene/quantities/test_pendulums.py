@@ -9,12 +9,11 @@ from dataclasses import replace
 import pytest
 from scipy.optimize import brentq
 
-from watchsim.scene.body import Body
-from watchsim.scene.carriers import Ride, Weighed
-from watchsim.scene.file.outlines.adjust import _about, _moved
-from watchsim.scene.force import Spring, Torque
-from watchsim.scene.oscillation import _weight, frequency, nominal_frequency, oscillator, oscillators
-from watchsim.scene.scene import Scene
+from watchsim.scene.forces import Spring, Torque
+from watchsim.scene.placing import _about, _moved
+from watchsim.scene.roles import _weight, frequency, nominal_frequency, oscillator, oscillators
+from watchsim.scene.scene import Body, Scene
+from watchsim.scene.trains import Ride, Weighed
 
 GRAVITY = (3.0, -9.0)
 DOWN = math.atan2(-9.0, 3.0)

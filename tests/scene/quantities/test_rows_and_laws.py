@@ -7,10 +7,9 @@ from pathlib import Path
 import pytest
 
 from watchsim.mechanism.compile import scene_size
-from watchsim.scene.body import Body
 from watchsim.scene.errors import SceneError
-from watchsim.scene.file.load import load
-from watchsim.scene.scene import Scene
+from watchsim.scene.load import load
+from watchsim.scene.scene import Body, Scene
 
 TEXT = """
 [scene]

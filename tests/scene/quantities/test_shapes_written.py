@@ -9,9 +9,9 @@ import pytest
 
 from watchsim.geometry.primitives import Arc, Line
 from watchsim.scene.errors import Faults
-from watchsim.scene.file.keys.key_values import Table
-from watchsim.scene.file.keys.schema import BODY
-from watchsim.scene.file.outlines.written_shapes import shape_loops
+from watchsim.scene.keys import BODY
+from watchsim.scene.outlines import shape_loops
+from watchsim.scene.values import Table
 
 FIVE = [["0 mm", "0 mm"], ["5 mm", "1 mm"], ["6 mm", "4 mm"], ["3 mm", "7 mm"], ["-1 mm", "3 mm"]]
 

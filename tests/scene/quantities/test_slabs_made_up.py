@@ -7,14 +7,13 @@ from dataclasses import replace
 
 import pytest
 
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.hairspring import Spiral
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Line
-from watchsim.geometry.solids.hairspring import Spiral
-from watchsim.scene.body import Body
-from watchsim.scene.force import Contact, Side
+from watchsim.scene.forces import Contact, Side
 from watchsim.scene.layer_heights import Slab, slabs
-from watchsim.scene.scene import Scene
-from watchsim.scene.solid import HAIRSPRING, LYING, PLATE, UPRIGHT, Solid, Weight
+from watchsim.scene.scene import Body, Scene
+from watchsim.scene.solids import HAIRSPRING, LYING, PLATE, UPRIGHT, Solid, Weight
 
 THICK = 0.3e-3
 WEIGHT = Weight(1e-6, (0.0, 0.0), 1e-12)

@@ -7,9 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Line
-from watchsim.scene.solid import HAIRSPRING, LYING, PLATE, UPRIGHT, Solid, Weight, more_seen, total
+from watchsim.scene.solids import HAIRSPRING, LYING, PLATE, UPRIGHT, Solid, Weight, more_seen, total
 
 RNG = np.random.default_rng(8)
 Cloud = tuple[np.ndarray, np.ndarray]

@@ -7,24 +7,24 @@ from dataclasses import replace
 
 import pytest
 
-from watchsim.scene.body import Body
-from watchsim.scene.force import Contact, Side, Spring, Torque
-from watchsim.scene.gearing import Gear, Geared
-from watchsim.scene.oscillation import frequency, nominal_frequency, oscillator, oscillators
-from watchsim.scene.prescribed import Prescribed
+from watchsim.scene.forces import Contact, Side, Spring, Torque
 from watchsim.scene.roles import (
     Roles,
     drive_direction,
+    frequency,
     hinged_pallets,
     is_driven,
     keeps_time,
+    nominal_frequency,
     only_presses,
+    oscillator,
+    oscillators,
     partners,
     roles,
     swings,
     with_anchor,
 )
-from watchsim.scene.scene import Scene
+from watchsim.scene.scene import Body, Gear, Geared, Prescribed, Scene
 
 DOWN = (0.0, -9.0)
 

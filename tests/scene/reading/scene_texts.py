@@ -6,7 +6,7 @@ import pytest
 import tomllib
 
 from watchsim.scene.errors import SceneError
-from watchsim.scene.file.read_scene import from_mapping
+from watchsim.scene.load import from_mapping
 from watchsim.scene.scene import Scene
 
 BODIES = """

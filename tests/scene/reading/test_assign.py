@@ -7,9 +7,9 @@ from typing import Any
 
 import pytest
 
+from watchsim.scene.assign import assign, with_unit
 from watchsim.scene.errors import Faults
-from watchsim.scene.file.assign import assign, with_unit
-from watchsim.scene.file.keys.schema import key_at, siblings
+from watchsim.scene.keys import key_at, siblings
 from watchsim.units import ANGLE, NUMBER, TORQUE
 
 TRAIN = [{"ratio": 7}, {"ratio": 8, "inertia": "9 g·cm²"}]

@@ -8,8 +8,8 @@ import pytest
 from made_scenes import circle, drawing, square
 
 from watchsim.scene.errors import SceneError
-from watchsim.scene.file.load import load
-from watchsim.scene.force import Contact, Side
+from watchsim.scene.forces import Contact, Side
+from watchsim.scene.load import load
 
 INERTIA = 'inertia = "5 g·cm²"\nmass = "2 g"\n'
 BODIES = f"""

@@ -9,10 +9,9 @@ from typing import Any
 import pytest
 
 from watchsim import units
-from watchsim.construction.design import Conflict, Design
-from watchsim.construction.dimension import dim
+from watchsim.construction.design import Conflict, Design, dim
+from watchsim.scene.designed import chosen, kind_of, number_of, with_si
 from watchsim.scene.errors import Faults, SceneError
-from watchsim.scene.file.design_dimensions import chosen, kind_of, number_of, with_si
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,7 @@ import math
 import pytest
 from scene_texts import faults, read
 
-from watchsim.scene.gearing import Gear, Geared
-from watchsim.scene.scene import Scene
+from watchsim.scene.scene import Gear, Geared, Scene
 
 PLACES = {"a": 0, "b": 20, "c": 50, "d": 90}
 INERTIA = 'inertia = "5 g·cm²"\n'

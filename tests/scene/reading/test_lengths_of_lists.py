@@ -8,11 +8,10 @@ from typing import Any
 import pytest
 
 from watchsim.scene.errors import Faults
-from watchsim.scene.file.keys.key_values import Table, shown
-from watchsim.scene.file.keys.schema import BODY, TORQUE, nearest
-from watchsim.scene.file.parsed import parsed
-from watchsim.scene.file.readers.force_table import repeated, rows_of
-from watchsim.scene.file.readers.read_prescribed import read_prescribed
+from watchsim.scene.keys import BODY, TORQUE, nearest
+from watchsim.scene.read_bodies import read_prescribed
+from watchsim.scene.read_contacts import repeated, rows_of
+from watchsim.scene.values import Table, parsed, shown
 from watchsim.units import TIME
 
 
@@ -52,7 +51,7 @@ def test_what_toml_cannot_hold_is_shown_as_python_does() -> None:
 @pytest.mark.parametrize(("points", "taken"), [(0, False), (1, True), (2000, True), (2001, False)])
 def test_a_path_has_one_to_two_thousand_points(points: int, taken: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     given: list[Any] = []
-    monkeypatch.setattr("watchsim.scene.file.readers.read_prescribed.path", given.append)
+    monkeypatch.setattr("watchsim.scene.read_bodies.path", given.append)
     one = table({"motion": "driven", "path": [[f"{k + 1} s", f"{3 * k + 2} rad"] for k in range(points)]})
     read_prescribed(one, 0.25)
     assert [fault.key for fault in one.faults.found] == ([] if taken else ["here.path"])

@@ -7,7 +7,7 @@ import math
 import pytest
 from scene_texts import BODIES, faults, read
 
-from watchsim.scene.force import LineSpring
+from watchsim.scene.forces import LineSpring
 
 WITH_CARRIED = BODIES + '[bodies.c]\non = "a"\ninertia = "5 g·cm²"\n'
 POINTS = 'points = [["4 mm", "1 mm"], ["-2 mm", "5 mm"]]\n'

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from watchsim.scene.file.merge import merged
+from watchsim.scene.designed import merged
 
 BASE: dict[str, Any] = {
     "scene": {"title": "base", "nu": 0.25},

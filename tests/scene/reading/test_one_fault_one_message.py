@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from watchsim.scene.errors import SceneError
-from watchsim.scene.file.load import load
+from watchsim.scene.load import load
 
 # what stands in the good scene | what replaces it (; for a new line) | key and value | message
 SAID = """

@@ -6,8 +6,7 @@ import pytest
 from made_scenes import drawing, square
 
 from watchsim.scene.errors import SceneError
-from watchsim.scene.file.load import load, load_set
-from watchsim.scene.file.read_scene import changed
+from watchsim.scene.load import changed, load, load_set
 
 
 def test_a_faulty_value_is_replaced(desk, good):

@@ -7,7 +7,7 @@ import math
 import pytest
 from scene_texts import BODIES, faults, read, spring
 
-from watchsim.scene.force import Spring
+from watchsim.scene.forces import Spring
 
 TURN = math.radians
 

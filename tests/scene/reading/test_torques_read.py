@@ -7,7 +7,7 @@ import math
 import pytest
 from scene_texts import BODIES, faults, read, spring
 
-from watchsim.scene.force import Damping, Mainspring, Torque
+from watchsim.scene.forces import Damping, Mainspring, Torque
 
 TURN = math.radians
 

@@ -8,9 +8,9 @@ import pytest
 from made_scenes import circle, drawing, square
 from scene_texts import faults, read
 
-from watchsim.scene.body import Body
 from watchsim.scene.errors import SceneError
-from watchsim.scene.file.load import load
+from watchsim.scene.load import load
+from watchsim.scene.scene import Body
 
 SHAPE = 'polygon = [["1 mm", "-2 mm"], ["3 mm", "-2 mm"], ["3 mm", "4 mm"], ["1 mm", "4 mm"]]\n'  # 2 mm by 6 mm about (2, 1)
 OWN, OFF = 5e-3 * 40e-6 / 12.0, 5e-3 * 5e-6  # kg·m² of 5 g about its middle, and of the way from there to the origin

@@ -8,15 +8,15 @@ import pytest
 from made_scenes import circle, drawing, square
 
 from watchsim.drawing.findings import Finding
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.scene.errors import Faults
-from watchsim.scene.file.keys.key_values import Table
-from watchsim.scene.file.keys.schema import BODY
-from watchsim.scene.file.outlines.body_outlines import Outlines
-from watchsim.scene.file.readers.bore_notices import bore_notices, uniform_notices
-from watchsim.scene.file.readers.read_bodies import read_bodies
-from watchsim.scene.file.readers.read_solids import read_solids
-from watchsim.scene.solid import Weight
+from watchsim.scene.keys import BODY
+from watchsim.scene.outlines import Outlines
+from watchsim.scene.read_bodies import read_bodies
+from watchsim.scene.read_bores import bore_notices, uniform_notices
+from watchsim.scene.read_solids import read_solids
+from watchsim.scene.solids import Weight
+from watchsim.scene.values import Table
 
 PLATE = {"layer": "P", "thickness": "0.2 mm", "density": "8 g/cm³"}
 HOLE = Loop(square(1e-3, (2e-3, -3e-3), "BORE").reversed().edges, "BORE")  # drawn the other way round

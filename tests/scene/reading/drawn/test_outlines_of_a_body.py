@@ -9,12 +9,12 @@ import pytest
 from made_scenes import drawing, square
 
 from watchsim.drawing.findings import Finding
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Line
 from watchsim.scene.errors import Faults
-from watchsim.scene.file.keys.key_values import Table
-from watchsim.scene.file.keys.schema import BODY
-from watchsim.scene.file.outlines.body_outlines import Outlines, read_outlines
+from watchsim.scene.keys import BODY
+from watchsim.scene.outlines import Outlines, read_outlines
+from watchsim.scene.values import Table
 
 HEAD: dict[str, Any] = {"drawing": "a.dxf", "pivot": "P", "material": {"G": "left"}}
 SOLIDS = [

@@ -10,12 +10,12 @@ import pytest
 from made_scenes import circle, drawing, square
 
 from watchsim.drawing.drawing import Drawing
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Line
 from watchsim.scene.errors import Faults
-from watchsim.scene.file.keys.key_values import Table
-from watchsim.scene.file.keys.schema import BODY
-from watchsim.scene.file.outlines.adjust import adjusted
+from watchsim.scene.keys import BODY
+from watchsim.scene.placing import adjusted
+from watchsim.scene.values import Table
 
 LEFT, RIGHT = (-3e-3, 2e-3), (5e-3, -1e-3)
 HOLE = square(0.4e-3, (5.2e-3, -1.1e-3), "S", hole=True)

@@ -9,12 +9,12 @@ import pytest
 from made_scenes import circle, drawing, square
 
 from watchsim.drawing.drawing import Drawing
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Point
 from watchsim.scene.errors import Faults
-from watchsim.scene.file.keys.key_values import Table
-from watchsim.scene.file.keys.schema import BODY
-from watchsim.scene.file.outlines.pivot import given_pivot, marked_pivot, marks_on
+from watchsim.scene.keys import BODY
+from watchsim.scene.placing import given_pivot, marked_pivot, marks_on
+from watchsim.scene.values import Table
 
 BORE = Loop((Arc(2e-3, 1e-3, 0.2e-3, 0.0, -math.tau),), "PLATE", hole=True)
 LOOPS = (square(20e-3, layer="PLATE"), BORE, circle(0.3e-3, (5e-3, 1e-3), "STUD"), circle(0.1e-3, (-4e-3, 3e-3), "STUD"))

@@ -9,15 +9,15 @@ import pytest
 from made_scenes import square
 
 from watchsim.drawing.findings import Finding
-from watchsim.geometry.loop import Loop
+from watchsim.geometry.hairspring import Spiral
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Line, Point
-from watchsim.geometry.solids.hairspring import Spiral
 from watchsim.scene.errors import Faults
-from watchsim.scene.file.keys.key_values import Table
-from watchsim.scene.file.keys.schema import BODY
-from watchsim.scene.file.outlines.body_outlines import Outlines
-from watchsim.scene.file.readers.read_solids import read_solids
-from watchsim.scene.solid import Solid
+from watchsim.scene.keys import BODY
+from watchsim.scene.outlines import Outlines
+from watchsim.scene.read_solids import read_solids
+from watchsim.scene.solids import Solid
+from watchsim.scene.values import Table
 
 PIVOT = (3e-3, -4e-3)
 SHEET: dict[str, Any] = {"thickness": "0.2 mm", "density": "8 g/cm³"}

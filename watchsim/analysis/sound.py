@@ -1,0 +1,230 @@
+"""How does the sound of a run become a WAV file?
+
+48 kHz, 16 bits, one channel, made and written second by second. The loudest moment is nearly full scale.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import wave
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from watchsim.analysis.timegrapher import noises
+from watchsim.analysis.timing import beats, pitch
+from watchsim.scene.roles import keeps_time, roles, swings
+from watchsim.scene.scene import STATISTICS
+from watchsim.simulation.trajectory import Array as Array_of_trajectory
+from watchsim.simulation.trajectory import Trajectory
+from watchsim.storage.write import write_file
+
+# What does one blow sound like?
+#
+# A case rings on a few tones that die away. Which ones is no result of the simulation: these are typical of a small watch on a
+# microphone. When a blow sounds and how loud is: it begins at its instant, between samples too, with an amplitude that grows
+# with the root of the energy lost.
+#
+# A tone that dies away is one complex number per blow, turned and shrunk from sample to sample: y[n] = z y[n-1] + x[n]. Tails
+# are therefore exact however long, and a sound can be made block by block.
+
+Array = NDArray[np.float64]
+
+SAMPLES = 48000  # per second
+TONES = ((3400.0, 0.9e-3, 0.45), (6100.0, 0.6e-3, 0.35), (11300.0, 0.3e-3, 0.2))  # Hz, decay time s, share of the start
+
+
+@dataclass
+class Ringing:
+    """Goes on from block to block; `sampled` counts the samples made."""
+
+    sampled: int = 0
+    _state: list[NDArray[np.complex128]] = field(default_factory=lambda: [np.zeros(1, complex) for _ in TONES])
+
+    def block(self, count: int, times: Array, loudness: Array) -> Array:
+        """The next `count` samples: what still rings, and the blows at `times` (s) within them."""
+        from scipy.signal import lfilter  # half a second to load, which a movie without sound need not wait for
+
+        place = np.ceil(times * SAMPLES).astype(np.int64)
+        late = place / SAMPLES - times
+        own = place - self.sampled
+        if len(own) and not (own.min() >= 0 and own.max() < count):
+            raise ValueError("a blow lies outside the block of sound it was given with")
+        out = np.zeros(count)
+        for k, (hertz, decay, share) in enumerate(TONES):
+            turning = complex(-1.0 / decay, 2.0 * np.pi * hertz)
+            begun = share * loudness * np.exp(turning * late)
+            blows = np.bincount(own, begun.real, count) + 1j * np.bincount(own, begun.imag, count)
+            ringing, self._state[k] = lfilter([1.0], [1.0, -np.exp(turning / SAMPLES)], blows, zi=self._state[k])
+            out += ringing.real
+        self.sampled += count
+        return out
+
+
+# Which blows sound when, for as long as requested?
+#
+# Those of the run; where the sound is to be longer, its last oscillations over and over. They are cut in the silence before a
+# beat, a whole number of oscillations apart, and a whole turn of the escape wheel where there is one, so that nothing jumps.
+
+BEFORE = 0.02  # of a half period before a beat's first noise: nothing sounds there
+LEAST_TICKS = 3
+SILENT = 1.5  # periods since the last tick: the watch stands
+
+
+@dataclass(frozen=True)
+class Loop:
+    """The stretch from `start` to `end` (s of the run) is repeated: so many oscillations."""
+
+    start: float
+    end: float
+    oscillations: int
+
+
+@dataclass(frozen=True)
+class Score:
+    """`times` (s since the sound begins) and `energies` (J) of a run's blows, known until `known`; then `loop`."""
+
+    times: Array_of_trajectory
+    energies: Array_of_trajectory
+    known: float
+    loop: Loop | None
+
+    def between(self, start: float, end: float) -> tuple[Array_of_trajectory, Array_of_trajectory]:
+        """Times and energies of the blows from `start` up to `end`, s."""
+        found = [self._part(start, min(end, self._turn), 0.0)]
+        if self.loop is not None and end > self._turn:
+            length = self.loop.end - self.loop.start
+            first = max(0, math.floor((start - self.loop.end) / length))
+            last = math.floor((end - self.loop.end) / length)
+            for k in range(first, last + 1):
+                shift = (k + 1) * length
+                low, high = max(start, self.loop.end + k * length), min(end, self.loop.end + (k + 1) * length)
+                found.append(self._part(low - shift, high - shift, shift))
+        times, energies = zip(*found, strict=True)
+        return np.concatenate(times), np.concatenate(energies)
+
+    @property
+    def _turn(self) -> float:
+        return self.known if self.loop is None else self.loop.end
+
+    def _part(self, start: float, end: float, shift: float) -> tuple[Array_of_trajectory, Array_of_trajectory]:
+        first, last = np.searchsorted(self.times, (start, end), side="left")
+        return self.times[first:last] + shift, self.energies[first:last]
+
+
+def score(run: Trajectory, duration: float | None = None) -> Score:
+    """The blows of a run; with a loop where `duration` (s) is longer than it. ValueError where then nothing beats."""
+    times, energies = noises(run)
+    begun = run.spans[-1][0] if run.keep == STATISTICS and run.spans else 0.0
+    heard = (times >= begun) & (energies > 0.0)
+    times, energies, known = times[heard] - begun, energies[heard], run.simulated - begun
+    loop = None if duration is None or duration <= known else _loop(run, begun)
+    return Score(times, energies, known, loop)
+
+
+def _loop(run: Trajectory, begun: float) -> Loop:
+    scene, holds = run.scene, f"the run holds {run.simulated - begun:.4g} s of sound"
+    if not swings(scene) or not keeps_time(scene):
+        raise ValueError(f"{holds}; nothing in it beats that could go on for longer")
+    found = beats(run)
+    if len(found) < LEAST_TICKS:
+        raise ValueError(f"{holds}, too few beats to go on with")
+    heard = np.isfinite(found.tick)
+    ticks = found.tick - begun - BEFORE * 0.5 * found.nominal_period
+    if not heard[-LEAST_TICKS:].all() or run.simulated - found.tick[-1] > SILENT * found.nominal_period:
+        raise ValueError(f"{holds}; at its end it is silent, so it cannot go on for longer")
+    # Ticks of one direction of swing, back from the last.
+    same = np.arange(len(found) - 1, -1, -2)
+    same = same[: np.argmin(heard[same]) if not heard[same].all() else len(same)][::-1]
+    wheel = roles(scene).wheel
+    whole = None if wheel is None else pitch(scene, wheel)
+    turn = 1 if whole is None else round(math.tau / whole)
+    steps = len(same) - 1
+    count = turn * (steps // turn) if steps >= turn else steps
+    return Loop(float(ticks[same[-1 - count]]), float(ticks[same[-1]]), count)
+
+
+# How does the sound of a run become a WAV file?
+
+BLOCK = SAMPLES
+FULL = 0.9 * 32767.0
+LONGEST = 12 * 3600.0  # s: the sizes in a WAV file are numbers of 32 bits
+Progress = Callable[[float, float], None]
+
+
+def sound(
+    run: Trajectory, path: str | os.PathLike[str], duration: float | None = None, progress: Progress | None = None
+) -> Path:
+    """Write the ticking of a run as WAV, and return the path; written whole or not at all.
+
+    duration  s, up to twelve hours; default as long as the run. What is longer repeats the last oscillations, see `score`
+    progress  called with (seconds done, seconds in all)
+
+    ValueError where nothing sounds, or where what is to go on for longer than the run does not beat.
+    """
+    target = wav_path(path)
+    heard = score(run, duration)
+    length = heard.known if duration is None else float(duration)
+    check_length(length)
+    if not len(heard.times):
+        raise ValueError("nothing sounds: this run has no impacts, or kept none")
+    write_file(target, lambda place: write_score(place, heard, length, progress), "the sound")
+    return target
+
+
+def wav_path(path: str | os.PathLike[str]) -> Path:
+    """The path, if its ending says WAV."""
+    target = Path(path)
+    if target.suffix.lower() != ".wav":
+        raise ValueError(f"{target}: a sound ends in .wav")
+    return target
+
+
+def check_length(length: float) -> None:
+    """ValueError for a length (s) that no file can have."""
+    if not (math.isfinite(length) and 1.0 / SAMPLES < length <= LONGEST):
+        raise ValueError(f"a sound lasts up to {LONGEST / 3600.0:.0f} hours, not {length:.6g} s")
+
+
+def told(heard: Score) -> str | None:
+    """What is repeated, in words; None where nothing is."""
+    if heard.loop is None:
+        return None
+    what = "oscillation is" if heard.loop.oscillations == 1 else f"{heard.loop.oscillations} oscillations are"
+    return f"the run holds {heard.known:.4g} s; from there on its last {what} repeated"
+
+
+def write_score(place: Path, heard: Score, length: float, progress: Progress | None = None) -> None:
+    """Write `length` seconds of a score, in which something sounds, as WAV."""
+    factor = FULL / _peak(heard, length)
+    # Given a name that it cannot open, wave prints a traceback besides.
+    with place.open("wb") as raw, wave.open(raw, "wb") as file:
+        file.setnchannels(1)
+        file.setsampwidth(2)
+        file.setframerate(SAMPLES)
+        for block in _blocks(heard, length):
+            file.writeframes(np.rint(factor * block).astype("<i2").tobytes())
+            if progress is not None:
+                progress(file.tell() / SAMPLES, length)
+
+
+def _peak(heard: Score, length: float) -> float:
+    """The largest sample; of what is repeated, once and what follows it are enough."""
+    if heard.loop is not None:
+        length = min(length, heard.loop.end + 2.0 * (heard.loop.end - heard.loop.start))
+    return max(float(np.abs(block).max()) for block in _blocks(heard, length))
+
+
+def _blocks(heard: Score, length: float) -> Iterator[Array]:
+    ringing, whole = Ringing(), round(length * SAMPLES)
+    while ringing.sampled < whole:
+        first, count = ringing.sampled, min(BLOCK, whole - ringing.sampled)
+        # A blow sounds from the next sample on, so those just after the last sample of a block belong to the next one.
+        times, energies = heard.between((first - 1) / SAMPLES, (first + count) / SAMPLES)
+        place = np.ceil(times * SAMPLES)
+        own = (place >= first) & (place < first + count)
+        yield ringing.block(count, times[own], np.sqrt(energies[own]))

@@ -1,1 +1,0 @@
-"""Which events of the wheel mark the phases of a beat?"""

@@ -1,0 +1,264 @@
+"""Whose fault is an error, and what is needed to mend it?"""
+
+from __future__ import annotations
+
+import contextlib
+import dis
+import errno
+import io
+import json
+import os
+import platform
+import shlex
+import sys
+import tempfile
+import time
+import traceback
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from watchsim.units import Dimension
+
+
+# What if nobody reads the output any more?
+#
+# `watchsim run ... | head` closes the pipe after ten lines; a terminal may be closed. That is no reason to stop, or to say
+# anything: what is printed from then on goes nowhere. Nor is a full disk a reason to give up a run whose results have a place
+# of
+# their own; but then output is missing, and the command says so in the end.
+
+GONE = (errno.EPIPE, errno.EIO, errno.EBADF, errno.ESHUTDOWN)
+
+
+class _Patient(io.FileIO):
+    """A stream whose reader may go, and whose disk may be full."""
+
+    lost = ""  # why something of it could not be written, where somebody may be waiting for it
+
+    def write(self, content: Any) -> int:
+        """All of it, somewhere or nowhere."""
+        try:
+            return super().write(content)
+        except OSError as error:
+            if error.errno not in GONE:
+                self.lost = error.strerror or str(error)
+            with contextlib.suppress(OSError):
+                nowhere = os.open(os.devnull, os.O_WRONLY)
+                os.dup2(nowhere, self.fileno())
+                os.close(nowhere)
+            return len(memoryview(content))
+
+
+def lost_output() -> str:
+    """Why not all that was printed could be written; empty where it was."""
+    for stream in (sys.stdout, sys.stderr):
+        with contextlib.suppress(OSError, ValueError):
+            stream.flush()
+    raw = getattr(getattr(sys.stdout, "buffer", None), "raw", None)
+    return str(getattr(raw, "lost", ""))
+
+
+def open_streams() -> None:
+    """Make stdout and stderr such streams."""
+    for name, number in (("stdout", 1), ("stderr", 2)):
+        old = getattr(sys, name)
+        try:
+            raw = _Patient(number, "w", closefd=False)
+        except OSError:  # closed from the start
+            raw = _Patient(os.devnull, "w")
+        lines = old is not None and (raw.isatty() or name == "stderr")
+        stream = io.TextIOWrapper(io.BufferedWriter(raw), encoding="utf-8", errors="replace", line_buffering=lines)
+        setattr(sys, name, stream)
+
+
+# How does the tool talk to a terminal?
+#
+# Results go to stdout. Everything else goes to stderr, and progress is quiet where stderr is no terminal.
+
+NARROWEST, WIDEST = 0.06, 0.42  # m, of pictures for print
+FINE, MISSED, BAD_INPUT, GAVE_UP, FAULT, INTERRUPTED = 0, 1, 2, 3, 4, 130
+
+
+class InputError(ValueError):
+    """Something the user gave that cannot be used; the text says what, why, and what to do."""
+
+
+def say(words: str) -> None:
+    """A line for people, on stderr; where nobody reads it any more, nothing stops for that."""
+    with contextlib.suppress(OSError, ValueError):
+        print(words, file=sys.stderr, flush=True)
+
+
+def print_json(value: Any) -> None:
+    """One JSON value on stdout."""
+    json.dump(value, sys.stdout, indent=1, ensure_ascii=False, allow_nan=False)
+    print(flush=True)
+
+
+class Progress:
+    """One line on a terminal that shows how far something has come and how long it will still take."""
+
+    def __init__(self, words: str) -> None:
+        self._words = words
+        self._start = time.monotonic()
+        self._told = 0.0
+        self._quiet = not sys.stderr.isatty()
+
+    def __call__(self, done: float, whole: float) -> None:
+        now = time.monotonic()
+        if self._quiet or now - self._told < 0.1:
+            return
+        self._told = now
+        elapsed = now - self._start
+        left = elapsed * (whole - done) / done if done > 0.0 else 0.0
+        words = f"\r{self._words}  {done:.4g} of {whole:.4g}   {_clock(elapsed)} elapsed, {_clock(left)} left"
+        self._show(f"{words:<79}")
+
+    def close(self) -> None:
+        if not self._quiet and self._told:
+            self._show("\r" + " " * 79 + "\r")
+
+    def _show(self, words: str) -> None:
+        try:
+            print(words, end="", file=sys.stderr, flush=True)
+        except OSError:  # the terminal was closed
+            self._quiet = True
+
+
+def _clock(seconds: float) -> str:
+    if seconds < 60.0:
+        return f"{seconds:.1f} s"
+    minutes, rest = divmod(round(seconds), 60)
+    return f"{minutes // 60}:{minutes % 60:02d}:{rest:02d}" if minutes >= 60 else f"{minutes}:{rest:02d} min"
+
+
+def announce_compile(kernel: str = "advance.advance", what: str = "the solver", wait: str = "half a minute") -> None:
+    """Say so when the solver has to be compiled first: it is the longest wait a newcomer meets."""
+    from watchsim.jit import is_cached
+
+    if not is_cached(kernel):
+        say(f"Compiling {what} for this machine: once after installation, about {wait} ...")
+
+
+def parse_window(text: str | None, option: str = "--window") -> tuple[float, float] | None:
+    """The two times of a text such as "179.4 s:179.75 s", in seconds; `option` is what it was given with."""
+    if text is None:
+        return None
+    from watchsim.units import TIME, UnitError, parse
+
+    parts = text.split(":")
+    if len(parts) != 2:
+        raise InputError(f'{option} "{text}": write two times with a colon between them, such as "179.4 s:179.75 s".')
+    try:
+        start, end = (parse(part.strip(), TIME) for part in parts)
+    except UnitError as error:
+        raise InputError(f'{option} "{text}": {error}') from error
+    if not end > start:
+        raise InputError(f'{option} "{text}": the second time must be later than the first.')
+    return start, end
+
+
+def check_picture(target: str, source: str) -> None:
+    """InputError unless --png names a file that a picture may be written to, which is not the input's."""
+    path = Path(target)
+    if path.is_dir():
+        raise InputError(f"--png {target}: is a folder; a picture needs the name of a file in it, such as picture.png.")
+    if path.suffix.lower() != ".png":
+        raise InputError(f"--png {target}: the picture is a PNG, so its name must end in .png.")
+    if path.resolve() == Path(source).resolve():
+        raise InputError(f"--png {target}: is the input itself, which would be lost. Choose another name.")
+    if not path.parent.is_dir():
+        raise InputError(f"--png {target}: there is no folder {path.parent}; create it first.")
+
+
+def parse_width(text: str) -> float:
+    """The width of a picture for print (--width), m."""
+    from watchsim.units import LENGTH
+
+    width = parse_positive("--width", text, LENGTH)
+    if not NARROWEST <= width <= WIDEST:
+        raise InputError(f'--width "{text}": a picture for print is {1e3 * NARROWEST:g} mm to {1e3 * WIDEST:g} mm wide.')
+    return width
+
+
+def check_tolerance(tolerance: float | None) -> None:
+    """InputError where --tol is given and lies outside what a run may be asked for."""
+    from watchsim.tolerances import COARSEST_TOLERANCE, FINEST_TOLERANCE
+
+    if tolerance is not None and not FINEST_TOLERANCE <= tolerance <= COARSEST_TOLERANCE:
+        raise InputError(f"--tol {tolerance:g}: must lie between {FINEST_TOLERANCE:g} and {COARSEST_TOLERANCE:g}.")
+
+
+def parse_names(text: str | None) -> list[str] | None:
+    """The names in a text such as "wheel,lever"."""
+    return [name.strip() for name in text.split(",") if name.strip()] if text else None
+
+
+def parse_positive(option: str, text: str, dimension: Dimension) -> float:
+    """The value of a command-line option such as `--snap "0.01 mm"` in SI units; above zero."""
+    from watchsim.units import UnitError, parse
+
+    try:
+        value = parse(text, dimension)
+    except UnitError as error:
+        raise InputError(f'{option} "{text}": {error}') from error
+    if not value > 0.0:
+        raise InputError(f'{option} "{text}": must be positive.')
+    return value
+
+
+# Whose fault is an error, and what is needed to mend it?
+
+PACKAGE = Path(__file__).resolve().parents[2]
+
+
+def is_refusal(error: Exception) -> bool:
+    """True for a ValueError that this package raised itself: it says in words what cannot be used.
+
+    One out of a library, or out of a function such as math.sqrt, comes from what this package should have checked.
+    """
+    return isinstance(error, ValueError) and _is_raised_here(error.__traceback__)
+
+
+def _is_raised_here(trace: TracebackType | None) -> bool:
+    """True if the last thing that was done is a `raise` in this package."""
+    while trace is not None and trace.tb_next is not None:
+        trace = trace.tb_next
+    if trace is None:
+        return False
+    code = trace.tb_frame.f_code
+    raised = code.co_code[trace.tb_lasti] == dis.opmap["RAISE_VARARGS"]
+    return raised and PACKAGE in Path(code.co_filename).resolve().parents
+
+
+def report(error: Exception, argv: list[str]) -> str:
+    """Write a file to send, and say where it is."""
+    words = f"{type(error).__name__}: {error}".strip().splitlines()[0][:300]
+    told = f"This is a fault of watchsim, not of its input ({words})."
+    text = report_text(error, argv)
+    for folder in (Path.cwd, lambda: Path(tempfile.gettempdir())):
+        try:
+            path = folder() / f"watchsim-fault-{time.strftime('%Y%m%d-%H%M%S')}-{os.urandom(2).hex()}.txt"
+            path.write_text(text, encoding="utf-8", errors="replace")
+        except OSError:
+            continue
+        return f"{told}\nPlease send {path} to its authors; it holds the command, the versions and where it happened."
+    return f"{told}\n{text}"
+
+
+def report_text(error: Exception, argv: list[str]) -> str:
+    """The command, the versions, and where it happened."""
+    from watchsim.results.folder import versions
+
+    return "\n".join(
+        (
+            f"command    watchsim {shlex.join(argv)}",
+            f"system     {platform.platform()}, {platform.machine()}",
+            f"python     {sys.version}",
+            *(f"{name:<10} {version}" for name, version in versions().items() if name != "python"),
+            "",
+            "".join(traceback.format_exception(error)),
+        )
+    )

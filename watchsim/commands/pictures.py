@@ -1,0 +1,334 @@
+"""What does `watchsim check SCENE --turn` do? Lead the mechanism through its cycle, report what happens, draw it."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import IO, TYPE_CHECKING, Any
+
+from watchsim import stopping
+from watchsim.commands.beside import drawn_beside
+from watchsim.commands.console import InputError, Progress, parse_positive, say
+
+if TYPE_CHECKING:
+    from watchsim.analysis.timeline import Beat
+    from watchsim.render.kinematics_plot import Kinematics
+    from watchsim.render.style import Figure
+    from watchsim.scene.scene import Scene
+    from watchsim.simulation.trajectory import Trajectory
+
+
+# Which plots are there of a run, and what draws each?
+
+ALL = "all"
+
+
+@dataclass(frozen=True)
+class Request:
+    """What was asked for: bodies (None: all), quantities, window (s; None: the usual one of each kind), width (mm)."""
+
+    run: Trajectory
+    bodies: list[str] | None
+    quantities: tuple[str, ...]
+    window: tuple[float, float] | None
+    width: float
+
+    @cached_property
+    def beats(self) -> list[Beat]:
+        """The beats that the plots of a beat share."""
+        from watchsim.analysis.timeline import shown_beats
+
+        return shown_beats(self.run, self.window, rubbed=False)
+
+    @property
+    def beats_if_any(self) -> list[Beat]:
+        """The same; none where there are none."""
+        try:
+            return self.beats
+        except ValueError:
+            return []
+
+
+def _kinematics(asked: Request) -> Figure:
+    from watchsim.render.kinematics_plot import plot_kinematics
+
+    return plot_kinematics(asked.run, asked.bodies, asked.quantities, asked.window, asked.width)
+
+
+def _phases(asked: Request) -> Figure:
+    from watchsim.render.phase_bands import plot_phases
+
+    return plot_phases(asked.run, asked.window, asked.width, asked.beats)
+
+
+def _portrait(asked: Request) -> Figure:
+    from watchsim.render.phase_portrait import plot_phase_portrait
+
+    return plot_phase_portrait(asked.run, asked.bodies, asked.window, asked.width)
+
+
+def _torque(asked: Request) -> Figure:
+    from watchsim.render.torque_plot import plot_torque
+
+    return plot_torque(asked.run, asked.window, asked.width, asked.beats)
+
+
+def _forces(asked: Request) -> Figure:
+    from watchsim.render.force_plot import plot_forces
+
+    return plot_forces(asked.run, asked.window, asked.width)
+
+
+def _timeline(asked: Request) -> Figure:
+    from watchsim.render.timeline_plot import plot_timeline
+
+    return plot_timeline(asked.run, asked.window, asked.width, asked.beats)
+
+
+def _energy(asked: Request) -> Figure:
+    from watchsim.render.energy_plot import plot_energy
+
+    return plot_energy(asked.run, asked.window, asked.width, asked.beats_if_any)
+
+
+def _timing(asked: Request) -> Figure:
+    from watchsim.render.timing_plot import plot_timing
+
+    return plot_timing(asked.run, asked.window, asked.width)
+
+
+def _tape(asked: Request) -> Figure:
+    from watchsim.render.timing_plot import plot_tape
+
+    return plot_tape(asked.run, asked.window, asked.width)
+
+
+KINDS: dict[str, Callable[[Request], Figure]] = {
+    "kinematics": _kinematics,
+    "phases": _phases,
+    "timeline": _timeline,
+    "phase-portrait": _portrait,
+    "torque": _torque,
+    "forces": _forces,
+    "energy": _energy,
+    "timing": _timing,
+    "tape": _tape,
+}
+
+
+def chosen(names: Sequence[str]) -> list[str]:
+    """The kinds of those names, in order and each once; InputError with the choices."""
+    wrong = [name for name in names if name not in (*KINDS, ALL)]
+    if wrong or not names:
+        raise InputError(f"--kind {','.join(names)}: choose from {', '.join(KINDS)}, or {ALL}.")
+    return list(KINDS) if ALL in names else list(dict.fromkeys(names))
+
+
+# Which plots and movies come with a run, and what if one of them cannot be drawn?
+
+Draw = Callable[[Path | IO[bytes]], object]
+Draws = Mapping[str, Draw]  # by the name of the picture in the results folder
+
+
+class LeftOut(Exception):
+    """The process is to stop: a picture under way is given up, it can be drawn later."""
+
+
+MOST_PLOTTED = 12  # bodies, in the plots that come with a run; each costs a fiftieth of a second and an inch of paper
+WHOLE_RUN = 10.0  # s that the movie of a whole run takes
+
+
+def pictures(
+    run: Trajectory,
+    plotted: bool,
+    movie: bool,
+    gif: bool,
+    folder: Path | None = None,
+    panels: Kinematics | None = None,
+) -> dict[str, Callable[[Path], object]]:
+    """Name in the results folder -> what draws it into the file it is given.
+
+    Where there is a `folder`, plots may be drawn from now on by another process, and wait there in files without names.
+    """
+    found: dict[str, Any] = dict(_plots_of(run, folder, panels)) if plotted else {}
+    if movie:
+        found["movie.mp4"] = lambda path: _movie(run, path, slow=1 / 20)
+    if gif:
+        found["movie.gif"] = lambda path: _movie(run, path, slow=1 / 40)
+    return {name: _drawn(draw) for name, draw in found.items()}
+
+
+def page(run: Trajectory, numbers: Mapping[str, Any]) -> dict[str, Callable[[Path], object]]:
+    """The same for report.html; `numbers` are those of summary.json."""
+
+    def write(path: Path) -> None:
+        from watchsim.pages.report_page import page_text
+
+        path.write_bytes(page_text(run, numbers=numbers).encode("utf-8", "replace"))
+
+    return {"report.html": _drawn(write)}
+
+
+def _drawn(draw: Callable[[Path], object]) -> Callable[[Path], None]:
+    """The same, but a picture that cannot be drawn costs a line, not the run."""
+
+    def attempt(path: Path) -> None:
+        if stopping.requested():
+            return
+        try:
+            draw(path)
+        except LeftOut:
+            path.unlink(missing_ok=True)
+        except Exception as error:
+            path.unlink(missing_ok=True)
+            say(f"{path.name} could not be drawn: {error}")
+
+    return attempt
+
+
+def _plots_of(run: Trajectory, folder: Path | None, panels: Kinematics | None) -> Draws:
+    """What draws the plots, or waits for them where they are being drawn."""
+    draws = plots(run, panels)
+    moving = sum(body.motion != "fixed" for body in run.scene.bodies)
+    if draws and moving > MOST_PLOTTED:
+        say(f"Plots of {MOST_PLOTTED} of {moving} moving bodies; watchsim plot RUN --bodies NAMES draws others.")
+    return drawn_beside(draws, folder) if folder else draws
+
+
+def empty_panels(scene: Scene) -> Kinematics:
+    """The panels of the plots that come with a run, drawn once, which is half the work: made while the run goes on."""
+    from watchsim.analysis.expectations import not_begun
+
+    _load()
+    from watchsim.render.kinematics_plot import Kinematics
+
+    panels = Kinematics(not_begun(scene), _shown(scene))
+    panels.figure.canvas.draw()
+    return panels
+
+
+def _load() -> None:
+    """Load what draws, in a process of the command line without what nobody reads there."""
+    from watchsim.render.style import without_help
+
+    if stopping.installed():
+        without_help()
+
+
+def _shown(scene: Scene) -> list[str]:
+    return [body.name for body in scene.bodies if body.motion != "fixed"][:MOST_PLOTTED]
+
+
+def plots(run: Trajectory, panels: Kinematics | None = None) -> dict[str, Draw]:
+    """Kinematic plots: all that was recorded, and the last beats; in the `panels` of `empty_panels`, where there are any."""
+    if len(run.t) < 2:
+        return {}
+
+    @functools.cache
+    def shown() -> Kinematics:
+        _load()
+        from watchsim.render.kinematics_plot import Kinematics
+
+        return panels.of(run) if panels else Kinematics(run, _shown(run.scene))
+
+    def plot(window: Callable[[], tuple[float, float] | None]) -> Draw:
+        def draw(target: Path | IO[bytes]) -> None:
+            from watchsim.render.kinematics_plot import write_png
+
+            write_png(shown().show(window(), dots=True), target)
+
+        return draw
+
+    return {"plots/kinematics.png": plot(lambda: None), "plots/last_beats.png": plot(lambda: last_beats(run))}
+
+
+def last_beats(run: Trajectory, share: float = 1.5) -> tuple[float, float]:
+    """The last one and a half oscillations, or the last tenth where nothing keeps time, of the last stretch recorded."""
+    from watchsim.render.view import recorded
+    from watchsim.scene.roles import frequency, keeps_time
+
+    start, end = recorded(run)[-1]
+    hertz = frequency(run.scene) if keeps_time(run.scene) else None
+    length = share / hertz if hertz else 0.1 * (end - start)
+    return max(start, end - length), end
+
+
+def filmed(run: Trajectory, slow: float) -> tuple[tuple[float, float], float]:
+    """What a movie shows, and how fast: the last oscillation at the speed `slow`; where nothing keeps time, all of it.
+
+    All means the last stretch that was recorded without a gap, in WHOLE_RUN seconds.
+    """
+    from watchsim.render.view import recorded
+    from watchsim.scene.roles import keeps_time
+
+    if keeps_time(run.scene):
+        return last_beats(run, 1.1), slow
+    start, end = recorded(run)[-1]
+    return (start, end), (end - start) / WHOLE_RUN
+
+
+def _movie(run: Trajectory, path: Path, slow: float) -> None:
+    from watchsim.render.movie import movie
+
+    window, speed = filmed(run, slow)
+    progress = Progress(f"{path.name}, frames:")
+
+    def drawn(done: int, whole: int) -> None:
+        if stopping.requested():
+            raise LeftOut
+        progress(done, whole)
+
+    try:
+        movie(run, path, window=window, speed=speed, progress=drawn)
+    finally:
+        progress.close()
+
+
+# What does `watchsim check SCENE --turn` do? Lead the mechanism through its cycle, report what happens, draw it.
+
+
+@dataclass(frozen=True)
+class Turned:
+    """What came out, for machines and for people."""
+
+    report: dict[str, Any]
+    text: str
+    passes: bool
+
+
+def turned_by_hand(scene: Scene, swing: str | None, movie: str | None, picture: str | None, on_dark: bool) -> Turned:
+    """Turn the scene; write a movie and a picture where asked. SceneError where the scene is none that can be turned."""
+    from watchsim.commands.inputs import secured_file
+    from watchsim.escapement.turn import PASSES, turn, turn_report, turn_text
+
+    target = None
+    if movie:
+        from watchsim.render.encoder import check_path
+
+        target = secured_file(check_path(movie), "the movie")
+    found = turn(scene, None if swing is None else _swing(scene, swing))
+    if picture:
+        from watchsim.render.turn_picture import turn_picture
+
+        turn_picture(found, Path(picture), on_dark)
+    if target is not None:
+        from watchsim.render.movie import turn_movie
+
+        turn_movie(found, target, on_dark)
+        say(f"Movie: {target}")
+    report = turn_report(found)
+    return Turned(report, turn_text(found), report["verdict"] == PASSES)
+
+
+def _swing(scene: Scene, text: str) -> float:
+    """How far the oscillator is led to either side, rad or m."""
+    from watchsim.escapement.turn import swinging
+    from watchsim.units import ANGLE, LENGTH
+
+    found = swinging(scene)
+    if found is None:
+        raise InputError(f'--swing "{text}": nothing swings in this scene; its wheel is led by one pitch.')
+    return parse_positive("--swing", text, ANGLE if scene.body(found.body).motion == "pivot" else LENGTH)

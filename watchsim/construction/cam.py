@@ -1,0 +1,138 @@
+"""The cam as a design: its dimensions, what follows from them, its outlines and its scene."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from watchsim.construction.design import Conflict, Design, contact_tables, dim, told
+from watchsim.construction.outline import circle, rounded
+from watchsim.drawing.write import Sheet
+from watchsim.geometry.loops import Loop
+
+# Which numbers does the designer of an eccentric cam and its follower choose?
+
+CHOSEN = "chosen for this design"
+
+
+@dataclass(frozen=True)
+class Cam:
+    """The dimensions with their defaults, each in the unit that its declaration names."""
+
+    radius: float = dim(5.0, "mm", 0.2, 200.0, "of the cam, a disc", CHOSEN)
+    eccentricity: float = dim(1.5, "mm", 0.0, 150.0, "of the disc's middle from the axis: half of the lift", CHOSEN)
+    roller_radius: float = dim(1.0, "mm", 0.05, 50.0, "of the round end of the follower", CHOSEN)
+    mass: float = dim(2.0, "g", 1e-3, 1e4, "of the follower", CHOSEN)
+    preload: float = dim(0.2, "N", 1e-4, 1e4, "of the spring when the follower is lowest", CHOSEN)
+    rate: float = dim(0.1, "N/mm", 1e-4, 1e4, "by which that force grows as the follower is lifted", CHOSEN)
+    speed: float = dim(1200.0, "°/s", 0.1, 1e6, "of the cam", CHOSEN)
+    friction: float = dim(0.1, "", 0.0, 0.3, "coefficient of friction of cam and follower", "steel on oiled steel")
+    restitution: float = dim(0.2, "", 0.0, 0.9, "coefficient of restitution", CHOSEN)
+
+
+# How does the follower of an eccentric cam rise, and when does it leave the cam?
+#
+# The middle of the round end keeps the distance radius + roller_radius from the disc's middle, which goes round the axis:
+#
+#     y = e sin φ + √((R + r)² − e² cos² φ)
+#
+# At the top the spring must press at least with m e ω² (1 + e/(R + r)), or the follower flies on.
+
+
+def lowest(values: Cam) -> float:
+    """mm from the cam's axis to the middle of the follower's end."""
+    return values.radius + values.roller_radius - values.eccentricity
+
+
+def leaves_at(values: Cam) -> float:
+    """°/s: the least speed at which the follower leaves the cam at the top."""
+    e, reach = 1e-3 * values.eccentricity, values.radius + values.roller_radius
+    if e == 0.0:
+        return math.inf
+    press = values.preload + values.rate * 2.0 * values.eccentricity
+    return math.degrees(math.sqrt(press / (1e-3 * values.mass * e * (1.0 + values.eccentricity / reach))))
+
+
+# What does the scene of an eccentric cam say?
+
+TURNS = 3.0
+
+TEXT = """\
+# An eccentric cam with its follower, drawn to these dimensions:
+{dimensions}
+# Without friction the follower leaves the cam from {leaves:.6g} °/s on.
+
+[scene]
+title  = "Eccentric cam with its follower"
+schema = 1
+
+[bodies.cam]                         # turns counter-clockwise, evenly; its middle is below the axis at the start
+drawing  = "cam.dxf"
+layers   = ["CAM"]
+pivot    = ["0 mm", "0 mm"]
+motion   = "driven"
+velocity = "{values.speed!r} °/s"
+
+[bodies.follower]
+drawing  = "follower.dxf"
+layers   = ["END"]
+pivot    = ["0 mm", "0 mm"]
+position = ["0 mm", "{lowest!r} mm"]
+motion   = "slide"
+axis     = [0.0, 1.0]
+mass     = "{values.mass:.15g} g"
+
+[[springs]]                          # presses from the start: its rest lies inside the cam
+body      = "follower"
+stiffness = "{values.rate:.15g} N/mm"
+rest      = "{rest!r} mm"
+
+{contacts}
+[run]
+duration  = "{duration:.15g} s"
+tolerance = 1e-9
+"""
+
+CONTACTS = (("follower.END", "cam.CAM"),)
+
+
+def scene_text(values: Cam) -> str:
+    """The text of scene.toml: the follower on the lowest point of the cam."""
+    return TEXT.format(
+        dimensions=told(values),
+        values=values,
+        contacts=contact_tables(values, *CONTACTS),
+        leaves=leaves_at(values),
+        lowest=lowest(values),
+        rest=-values.preload / values.rate,
+        duration=round(TURNS * 360.0 / values.speed, 9),
+    )
+
+
+# What makes the eccentric cam with its follower a design?
+
+BORE = 0.12  # by the radius of the cam
+SHAFT = 6.0  # length of the follower in radii of its end
+
+
+def draw(values: Cam) -> dict[str, Sheet]:
+    """The disc about its bore, its middle below the axis; the follower with its round end at the origin."""
+    bore = circle("CAM", (0.0, 0.0), BORE * (values.radius - values.eccentricity), hole=True)
+    cam = [circle("CAM", (0.0, -values.eccentricity), values.radius), bore]
+    half, top = 0.6 * values.roller_radius, SHAFT * values.roller_radius
+    shaft = rounded([(half, 0.0, 0.0), (half, top, 0.0), (-half, top, 0.0), (-half, 0.0, 0.0)])
+    follower = [circle("END", (0.0, 0.0), values.roller_radius), Loop(tuple(shaft), "SHAFT")]
+    return {"cam": Sheet(tuple(cam)), "follower": Sheet(tuple(follower))}
+
+
+def conflicts(values: Cam) -> Iterator[Conflict]:
+    """What cannot be drawn or cannot work."""
+    if values.eccentricity >= 0.8 * values.radius:
+        yield Conflict("eccentricity", f"must be below {0.8 * values.radius:.4g} mm, else the axis has no room in the disc")
+    elif values.speed >= leaves_at(values):
+        what = f"the follower leaves the cam at the top from {leaves_at(values):.6g} °/s on: more preload, less mass or speed"
+        yield Conflict("speed", what)
+
+
+DESIGN = Design("cam", "Eccentric cam with its follower", Cam, draw, scene_text, conflicts)

@@ -1,0 +1,280 @@
+"""What does the scene of two gears in mesh say?"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from watchsim.construction.design import Values, contact_tables, told
+from watchsim.construction.outline import along, angle_of, arc_between, circle, fillet_chain, polar, turned
+from watchsim.geometry.loops import Loop
+from watchsim.geometry.primitives import TURN, Edge, Line, Point
+
+# What is the outline of a stone: a prism with a slanted end, held in a slot?
+#
+# In the frame of the part that holds it, millimetres.
+
+
+@dataclass(frozen=True)
+class Stone:
+    """A prism: `at(t, v)` is t along the working face, away from its tip, and v across, into the stone.
+
+    The face runs from `tip` in the direction `face` (degrees); the material is to the right of it. `relief` is how far the
+    end's other corner stands back.
+    """
+
+    tip: Point
+    face: float
+    width: float
+    length: float
+    relief: float
+
+    def at(self, t: float, v: float) -> Point:
+        ux, uy = polar(1.0, self.face)
+        return (self.tip[0] + t * ux + v * uy, self.tip[1] + t * uy - v * ux)
+
+    def loop(self, layer: str, edge: float) -> Loop:
+        """Tip, end, back and face, counter-clockwise; the two edges of the shank rounded by `edge`."""
+        corners = [
+            self.tip,
+            self.at(self.relief, self.width),
+            self.at(self.length, self.width),
+            self.at(self.length, 0.0),
+        ]
+        edges: list[Edge] = [Line(*corners[i], *corners[(i + 1) % 4]) for i in range(4)]
+        return Loop(tuple(fillet_chain(edges, [0.0, edge, edge, 0.0], closed=True)), layer)
+
+
+# What is the opening between two arms of a wheel?
+
+
+@dataclass(frozen=True)
+class Arms:
+    """Straight arms between hub and rim, evenly spaced, the first along the x axis; lengths in millimetres."""
+
+    number: int
+    width: float
+    hub: float  # radius
+    rim: float  # inner radius
+    fillet: float  # in the corners of the openings
+
+    def window(self, i: int) -> list[Edge]:
+        """The opening between arms i and i + 1, clockwise."""
+        first, last = self._side(i, 1.0), self._side(i + 1, -1.0)
+        chain: list[Edge] = [
+            arc_between(last[1], first[1], (0.0, 0.0), False),
+            Line(*first[1], *first[0]),
+            arc_between(first[0], last[0], (0.0, 0.0), True),
+            Line(*last[0], *last[1]),
+        ]
+        return fillet_chain(chain, [self.fillet] * 4, closed=True)
+
+    def _side(self, arm: int, side: float) -> tuple[Point, Point]:
+        """Where one edge of an arm leaves the hub and reaches the rim."""
+        half, angle = self.width / 2.0, arm * (360.0 / self.number)
+        hub, rim = (turned((math.sqrt(r * r - half * half), side * half), angle) for r in (self.hub, self.rim))
+        return hub, rim
+
+
+# What does a balance of a given inertia look like: its rim with arms, and its hairspring?
+#
+# Drawn only; nothing of it touches anything. The rim is as large as one of Glucydur with a square section in the usual
+# proportion, so that a heavier balance looks heavier. Millimetres.
+
+GLUCYDUR = 8.25  # mg/mm³
+SECTION = 0.12  # of the radius: width and height of the rim
+RADIUS_OF_GYRATION = 1.0 - 0.5 * SECTION
+ARM, HUB, FILLET = 0.085, 0.13, 0.035  # of the radius: width of an arm, radius of the hub, corners of the openings
+CLEAR_OF_ROLLER = 1.8  # times the reach of roller and stones, at least
+INNER, OUTER = 0.12, 0.62  # of the rim's radius: the hairspring's collet and stud
+TURNS, THICKNESS = 13.0, 0.03
+PLACES = 3  # decimals of a millimetre that a scene needs
+
+
+@dataclass(frozen=True)
+class BalanceWheel:
+    """A rim with straight arms, the first along the x axis, and the hairspring within."""
+
+    radius: float
+    arms: int
+    staff: float  # radius of its hole
+
+    def rim(self) -> list[Loop]:
+        """The outlines on the layer RIM: outer edge, staff's hole, openings between the arms."""
+        r = self.radius
+        spokes = Arms(self.arms, ARM * r, max(HUB * r, 2.0 * self.staff), (1.0 - SECTION) * r, FILLET * r)
+        return [
+            circle("RIM", (0.0, 0.0), r),
+            circle("RIM", (0.0, 0.0), self.staff, hole=True),
+            *(Loop(tuple(spokes.window(i)), "RIM", hole=True) for i in range(self.arms)),
+        ]
+
+    def hairspring(self, stud: float) -> str:
+        """What a scene says of the hairspring, its stud in that direction (degrees)."""
+        inner, outer = (round(share * self.radius, PLACES) for share in (INNER, OUTER))
+        return f'{{ inner = "{inner:g} mm", outer = "{outer:g} mm", turns = {TURNS:g}, stud = "{stud:g}°" }}'
+
+
+def balance_wheel(inertia: float, reach: float, staff: float, arms: int) -> BalanceWheel:
+    """That of a balance of `inertia` (mg·cm²) whose roller reaches so far and whose staff has that radius (mm)."""
+    # I = 2 pi rho (section R)² (gyration R)³, with R the outer radius and 100 mg·mm² to the mg·cm²
+    fifth = 100.0 * inertia / (math.tau * GLUCYDUR * SECTION**2 * RADIUS_OF_GYRATION**3)
+    return BalanceWheel(max(fifth**0.2, CLEAR_OF_ROLLER * reach), arms, staff)
+
+
+# How does the outline of a gear follow from one flank of a tooth?
+#
+# In the gear's own frame, millimetres; tooth 0 is centred on the x axis.
+
+BORE = 0.25  # by the radius of the floor
+
+
+def arc_through(first: Point, middle: Point, last: Point) -> Edge:
+    """The arc through three points."""
+    ax, ay = middle[0] - first[0], middle[1] - first[1]
+    bx, by = last[0] - first[0], last[1] - first[1]
+    cross = 2.0 * (ax * by - ay * bx)
+    a, b = ax * ax + ay * ay, bx * bx + by * by
+    centre = (first[0] + (by * a - ay * b) / cross, first[1] + (ax * b - bx * a) / cross)
+    return arc_between(first, last, centre, cross > 0.0)
+
+
+def other_flank(right: Sequence[Edge]) -> list[Edge]:
+    """The left flank, from tip to foot, of a tooth whose right one is given from foot to tip."""
+    return [_mirrored(edge).reversed() for edge in reversed(right)]
+
+
+def gear_outline(layer: str, tooth: Sequence[Edge], teeth: int, floor: float) -> list[Loop]:
+    """The toothed contour, one tooth with its gap turned round, and the bore."""
+    one, pitch = Loop(tuple(tooth), layer), 2.0 * math.pi / teeth
+    edges = [edge for i in range(teeth) for edge in one.moved(i * pitch, (0.0, 0.0)).edges]
+    return [Loop(tuple(edges), layer), circle(layer, (0.0, 0.0), BORE * floor, hole=True)]
+
+
+def _mirrored(edge: Edge) -> Edge:
+    """Across the x axis; from the same end to the same end."""
+    if isinstance(edge, Line):
+        return Line(edge.x0, -edge.y0, edge.x1, -edge.y1)
+    start, end = (edge.start[0], -edge.start[1]), (edge.end[0], -edge.end[1])
+    return arc_between(start, end, (edge.x, -edge.y), edge.sweep < 0.0)
+
+
+# What is the outline of pointed teeth with undercut fronts, of which only the tips work, and hollow backs?
+#
+# In the wheel's own frame, millimetres; tooth 0 has its tip on the x axis and the wheel turns clockwise.
+
+
+@dataclass(frozen=True)
+class ToothForm:
+    """One wheel's teeth: radii of tips and of the gaps' floor, the tip's flat, the back's lean there, fillets."""
+
+    tip: float
+    root: float
+    land: float
+    back: float  # length of the straight back behind the flat
+    lean: float  # of that back from the radius, degrees
+    hollow: float  # radius behind that
+    front_fillet: float
+
+
+def contour(form: ToothForm, undercut: float, layer: str, teeth: int) -> Loop:
+    """All teeth, counter-clockwise; one tooth and the gap behind it, turned as often as there are teeth."""
+    tooth = Loop(tuple(tooth_and_gap(form, undercut, 360.0 / teeth)), layer)
+    edges = [edge for i in range(teeth) for edge in tooth.moved(i * TURN / teeth, (0.0, 0.0)).edges]
+    return Loop(tuple(edges), layer)
+
+
+def tooth_and_gap(form: ToothForm, undercut: float, pitch: float) -> list[Edge]:
+    """From the middle of the gap before the tooth over its tip to the middle of the next gap."""
+    tip = (form.tip, 0.0)
+    flat = math.degrees(form.land / form.tip)
+    heel = polar(form.tip, flat)
+    back = along(heel, flat + 180.0 - form.lean, form.back)
+    foot = along(tip, 180.0 - undercut, _reach(tip, 180.0 - undercut, form.root))
+    hollow, end = hollow_back(back, form.hollow, form.root)
+    before = polar(form.root, (angle_of(foot) + angle_of(end) - pitch) / 2.0)
+    after = turned(before, pitch)
+    chain: list[Edge] = [
+        arc_between(before, foot, (0.0, 0.0), True),
+        Line(*foot, *tip),
+        arc_between(tip, heel, (0.0, 0.0), True),
+        Line(*heel, *back),
+        hollow,
+        arc_between(end, after, (0.0, 0.0), True),
+    ]
+    return fillet_chain(chain, [form.front_fillet, 0.0, 0.0, 0.0, 0.0])
+
+
+def hollow_back(back: Point, radius: float, root: float) -> tuple[Edge, Point]:
+    """The hollow behind a tooth: an arc through `back` that runs tangentially into the gap's floor, and where it ends."""
+    reach, distance = root + radius, math.hypot(*back)
+    cosine = (distance**2 + reach**2 - radius**2) / (2.0 * distance * reach)
+    if not -1.0 <= cosine <= 1.0:
+        raise ValueError("the backs of the teeth do not reach the floor of their gaps")
+    bearing = angle_of(back) + math.degrees(math.acos(cosine))
+    return arc_between(back, polar(root, bearing), polar(reach, bearing), False), polar(root, bearing)
+
+
+def _reach(start: Point, direction: float, radius: float) -> float:
+    """How far along `direction` the circle about the wheel's centre is first met."""
+    ux, uy = math.cos(math.radians(direction)), math.sin(math.radians(direction))
+    ahead = start[0] * ux + start[1] * uy
+    return -ahead - math.sqrt(ahead**2 + radius**2 - start[0] ** 2 - start[1] ** 2)
+
+
+# What does the scene of two gears in mesh say?
+
+TEXT = """\
+# {heading}, drawn to these dimensions:
+{dimensions}
+
+[scene]
+title  = "{title}, {values.wheel_teeth} and {values.pinion_teeth} teeth"
+schema = 1
+
+[bodies.wheel]                       # drives, counter-clockwise
+drawing  = "wheel.dxf"
+layers   = ["TEETH"]
+pivot    = "PIVOT"
+position = ["0 mm", "0 mm"]
+angle    = "0°"                      # a tooth on the line of centres
+inertia  = "{values.wheel_inertia:.15g} mg·cm²"
+
+[bodies.pinion]                      # a gap on the line of centres
+drawing  = "pinion.dxf"
+layers   = ["TEETH"]
+pivot    = "PIVOT"
+position = ["{distance!r} mm", "0 mm"]
+angle    = "{pinion!r}°"
+inertia  = "{values.pinion_inertia:.15g} mg·cm²"
+
+[[torques]]
+body  = "wheel"
+value = "{values.torque:.15g} µN·m"
+
+[[damping]]
+body    = "pinion"
+viscous = "{values.drag:.15g} µN·m·s/rad"
+
+{contacts}
+[run]
+duration  = "2 s"
+tolerance = 1e-10
+"""
+
+CONTACTS: tuple[tuple[str, str] | tuple[str, str, str], ...] = (("wheel.TEETH", "pinion.TEETH"),)
+
+
+def gear_pair_scene(values: Values, heading: str, title: str, distance: float) -> str:
+    """The text of scene.toml: both at rest, in the middle of the play; `distance` of the axes, mm."""
+    pinion = (180.0 + 180.0 / values.pinion_teeth) % (360.0 / values.pinion_teeth)
+    return TEXT.format(
+        heading=heading,
+        title=title,
+        dimensions=told(values),
+        values=values,
+        contacts=contact_tables(values, *CONTACTS),
+        distance=distance,
+        pinion=pinion,
+    )

@@ -1,0 +1,201 @@
+"""The ratchet as a design: its dimensions, what follows from them, its outlines and its scene."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from watchsim.construction.design import Conflict, Design, contact_tables, dim, told
+from watchsim.construction.outline import along, angle_of, circle, polar, rounded
+from watchsim.drawing.write import Sheet
+from watchsim.geometry.loops import Loop
+from watchsim.geometry.primitives import Point
+
+# Which numbers does the designer of a ratchet wheel and its click choose?
+
+CHOSEN = "chosen for this design"
+
+
+@dataclass(frozen=True)
+class Ratchet:
+    """The dimensions with their defaults, each in the unit that its declaration names."""
+
+    teeth: int = dim(24, "", 8, 80, "teeth of the ratchet wheel", "usual: 20 to 60")
+    tip_radius: float = dim(3.0, "mm", 0.3, 50.0, "of the wheel, to the points of its teeth", CHOSEN)
+    depth: float = dim(0.4, "mm", 0.02, 10.0, "of the teeth", CHOSEN)
+    undercut: float = dim(5.0, "°", 0.0, 30.0, "of the locking faces against the radius", CHOSEN)
+    click_length: float = dim(3.0, "mm", 0.3, 50.0, "from the click's pivot to its nose", CHOSEN)
+    click_angle: float = dim(45.0, "°", 10.0, 80.0, "from the radius at the nose to the click", CHOSEN)
+    nose_radius: float = dim(0.08, "mm", 0.005, 2.0, "of the round nose of the click", CHOSEN)
+    click_force: float = dim(5.0, "mN", 0.01, 1000.0, "of the click's spring at its nose", CHOSEN)
+    mainspring: float = dim(0.5, "mN·m", 0.001, 1000.0, "torque on the wheel, which the click holds", CHOSEN)
+    winding: float = dim(1.5, "mN·m", 0.002, 3000.0, "torque against it, while the watch is wound", CHOSEN)
+    viscous: float = dim(0.1, "mN·m·s/rad", 1e-5, 1000.0, "of whatever is wound: keeps the speed down", CHOSEN)
+    wheel_inertia: float = dim(50.0, "mg·cm²", 1e-3, 1e6, "wheel with what it turns", CHOSEN)
+    click_inertia: float = dim(0.5, "mg·cm²", 1e-4, 1e4, "click", CHOSEN)
+    friction: float = dim(0.1, "", 0.0, 0.3, "coefficient of friction of click and wheel", "steel on oiled steel")
+    restitution: float = dim(0.2, "", 0.0, 0.9, "coefficient of restitution", CHOSEN)
+
+
+# Which places follow from the dimensions of a ratchet wheel and its click?
+#
+# The wheel is wound counter-clockwise. At rest the click's nose lies in the root at 0°, between a locking face, which looks
+# clockwise and leans over it by the undercut, and the back of the tooth before. Millimetres, angles in degrees.
+
+
+def pitch(values: Ratchet) -> float:
+    return 360.0 / values.teeth
+
+
+def root(values: Ratchet) -> Point:
+    return (values.tip_radius - values.depth, 0.0)
+
+
+def tip(values: Ratchet) -> Point:
+    """Of the tooth whose locking face rises from the root at 0°."""
+    start, lean = root(values)[0], math.radians(values.undercut)
+    length = -start * math.cos(lean) + math.sqrt(values.tip_radius**2 - (start * math.sin(lean)) ** 2)
+    return along(root(values), -values.undercut, length)
+
+
+def back(values: Ratchet) -> float:
+    """Direction in which the back of the tooth before rises from the root at 0°."""
+    return angle_of(polar(values.tip_radius, angle_of(tip(values)) - pitch(values)), root(values))
+
+
+def opening(values: Ratchet) -> float:
+    """Between that back and the locking face."""
+    return -values.undercut - back(values)
+
+
+def nose(values: Ratchet) -> Point:
+    """Middle of the click's nose that touches both."""
+    half = 0.5 * opening(values)
+    return along(root(values), -values.undercut - half, values.nose_radius / math.sin(math.radians(half)))
+
+
+def pivot(values: Ratchet) -> Point:
+    """Of the click."""
+    return along(nose(values), -values.click_angle, values.click_length)
+
+
+# What are the outlines of a ratchet wheel and its click?
+
+BORE = 0.15  # of the tip radius
+FOOT = 3.0  # radius of the click about its pivot, in radii of its nose
+
+
+def wheel(values: Ratchet) -> list[Loop]:
+    """Saw teeth, the first root at 0°; bore."""
+    corners = []
+    for i in range(values.teeth):
+        turn = i * pitch(values)
+        corners.append((*polar(root(values)[0], turn), 0.0))
+        corners.append((*polar(values.tip_radius, turn + angle_of(tip(values))), 0.0))
+    return [Loop(tuple(rounded(corners)), "TEETH"), circle("TEETH", (0.0, 0.0), BORE * values.tip_radius, hole=True)]
+
+
+def click(values: Ratchet) -> list[Loop]:
+    """The nose to the left of the pivot; arm and foot touch nothing."""
+    r, far, wide = values.nose_radius, -values.click_length, FOOT * values.nose_radius
+    arm = rounded([(far, -r, 0.0), (0.0, -wide, 0.0), (0.0, wide, 0.0), (far, r, 0.0)])
+    return [circle("NOSE", (far, 0.0), r), Loop(tuple(arm), "ARM"), circle("FOOT", (0.0, 0.0), wide)]
+
+
+# What does the scene of a ratchet wheel and its click say?
+
+WOUND = 0.35  # rad of the click's spring at rest: it hardly weakens as the click is lifted
+
+TEXT = """\
+# A ratchet wheel with its click, drawn to these dimensions:
+{dimensions}
+
+[scene]
+title  = "Ratchet wheel of {values.teeth} teeth with its click"
+schema = 1
+
+[bodies.wheel]                       # wound counter-clockwise
+drawing  = "wheel.dxf"
+layers   = ["TEETH"]
+pivot    = ["0 mm", "0 mm"]
+inertia  = "{values.wheel_inertia:.15g} mg·cm²"
+
+[bodies.click]
+drawing  = "click.dxf"
+layers   = ["NOSE"]
+pivot    = ["0 mm", "0 mm"]
+position = ["{pivot[0]!r} mm", "{pivot[1]!r} mm"]
+angle    = "{angle!r} rad"
+inertia  = "{values.click_inertia:.15g} mg·cm²"
+
+[[springs]]                          # presses the nose into the teeth with {values.click_force:.6g} mN
+body      = "click"
+stiffness = "{stiffness!r} µN·m/rad"
+rest      = "{rest!r} rad"
+
+[[torques]]                          # the mainspring
+body  = "wheel"
+value = "{mainspring!r} mN·m"
+
+[[torques]]                          # the hand that winds, and lets go
+body  = "wheel"
+over  = "time"
+table = [["0.05 s", "0 mN·m"], ["0.07 s", "{winding} mN·m"], ["0.35 s", "{winding} mN·m"], ["0.37 s", "0 mN·m"]]
+
+[[damping]]
+body    = "wheel"
+viscous = "{values.viscous:.15g} mN·m·s/rad"
+
+{contacts}
+[run]
+duration  = "0.5 s"
+tolerance = 1e-9
+"""
+
+CONTACTS = (("click.NOSE", "wheel.TEETH"),)
+
+
+def scene_text(values: Ratchet) -> str:
+    """The text of scene.toml: the click holds, the wheel is wound, the click holds again."""
+    angle = -math.radians(values.click_angle)
+    return TEXT.format(
+        dimensions=told(values),
+        values=values,
+        contacts=contact_tables(values, *CONTACTS),
+        pivot=pivot(values),
+        angle=angle,
+        stiffness=values.click_force * values.click_length / WOUND,  # mN·mm = µN·m
+        rest=angle + WOUND,
+        mainspring=-values.mainspring,
+        winding=f"{values.winding:.15g}",
+    )
+
+
+# What makes the ratchet wheel with its click a design?
+
+NARROWEST = 20.0  # degrees
+
+
+def draw(values: Ratchet) -> dict[str, Sheet]:
+    """Wheel and click."""
+    return {"wheel": Sheet(tuple(wheel(values))), "click": Sheet(tuple(click(values)))}
+
+
+def conflicts(values: Ratchet) -> Iterator[Conflict]:
+    """What cannot be drawn or cannot work."""
+    if values.depth >= 0.8 * values.tip_radius:
+        yield Conflict("depth", f"must be below {0.8 * values.tip_radius:.4g} mm, else no wheel is left")
+        return
+    if opening(values) < NARROWEST:
+        yield Conflict("undercut", f"leaves roots of {opening(values):.3g}° for the nose; {NARROWEST:g}° are needed")
+        return
+    if nose(values)[0] - root(values)[0] > 0.6 * values.depth:
+        yield Conflict("nose_radius", "the nose does not reach deep enough between the teeth")
+    if values.click_angle > -back(values) - 5.0:
+        yield Conflict("click_angle", f"must be below {-back(values) - 5.0:.3g}°, else the click lies in the teeth")
+    if values.winding <= 1.05 * values.mainspring:
+        yield Conflict("winding", f"must be above {1.05 * values.mainspring:.4g} mN·m, else it does not wind the mainspring")
+
+
+DESIGN = Design("ratchet", "Ratchet wheel with its click", Ratchet, draw, scene_text, conflicts)

@@ -1,0 +1,48 @@
+"""The recoil anchor as a design: its dimensions, what follows from them, its outlines and its scene."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from watchsim.construction import graham as checks
+from watchsim.construction import graham as texts
+from watchsim.construction.design import Conflict, Design, dim
+from watchsim.construction.graham import CHOSEN, Anchor, Graham, sheets
+from watchsim.drawing.write import Sheet
+
+# Which numbers does the designer of a recoil anchor with its pendulum choose?
+
+
+@dataclass(frozen=True)
+class RecoilAnchor(Graham):
+    """Those of the dead-beat escapement, and the lean of the locking faces."""
+
+    recoil: float = dim(
+        20.0, "°", 1.0, 45.0, "of a locking face, from the arc about the pivot, so that it drives the wheel back", CHOSEN
+    )
+
+
+# What makes the recoil anchor a design?
+
+
+def _anchor(values: RecoilAnchor) -> Anchor:
+    return Anchor(values, values.recoil)
+
+
+def draw(values: RecoilAnchor) -> dict[str, Sheet]:
+    """Its two sheets."""
+    return sheets(_anchor(values))
+
+
+def scene(values: RecoilAnchor) -> str:
+    """Its scene."""
+    return texts.scene_text(_anchor(values), "Recoil anchor escapement")
+
+
+def conflicts(values: RecoilAnchor) -> Iterator[Conflict]:
+    """What does not go together."""
+    return checks.conflicts(_anchor(values))
+
+
+DESIGN = Design("recoil_anchor", "Recoil anchor escapement with its pendulum", RecoilAnchor, draw, scene, conflicts)

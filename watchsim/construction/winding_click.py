@@ -1,0 +1,246 @@
+"""The winding click as a design: its dimensions, what follows from them, its outlines and its scene."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from watchsim.construction import ratchet
+from watchsim.construction import ratchet as saw
+from watchsim.construction.design import Conflict, Design, contact_tables, dim, leaf_text, told
+from watchsim.construction.outline import along, angle_of, circle, polar, rounded
+from watchsim.construction.ratchet import Ratchet
+from watchsim.drawing.write import Sheet
+from watchsim.geometry.loops import Loop
+from watchsim.geometry.primitives import Point
+
+# Which numbers does the designer of a winding click with recoil choose?
+
+CHOSEN = "chosen for this design"
+
+
+@dataclass(frozen=True)
+class WindingClick:
+    """The dimensions with their defaults, each in the unit that its declaration names."""
+
+    teeth: int = dim(18, "", 8, 80, "teeth of the ratchet wheel on the barrel's arbor", CHOSEN)
+    tip_radius: float = dim(3.0, "mm", 0.3, 50.0, "of the wheel, to the points of its teeth", CHOSEN)
+    depth: float = dim(0.6, "mm", 0.02, 10.0, "of the teeth", CHOSEN)
+    undercut: float = dim(10.0, "°", 0.0, 30.0, "of the locking faces against the radius", CHOSEN)
+    click_length: float = dim(2.0, "mm", 0.2, 50.0, "from the click's pivot to the middle of its nose", CHOSEN)
+    nose_radius: float = dim(0.1, "mm", 0.005, 2.0, "of the round nose of the click", CHOSEN)
+    reach: float = dim(0.35, "mm", 0.01, 8.0, "of the nose into the circle of the points, on the line of centres", CHOSEN)
+    bank: float = dim(
+        2.0, "°", -40.0, 40.0, "of the click on its bank, past the line of centres as the wheel runs back", CHOSEN
+    )
+    leaf_length: float = dim(6.0, "mm", 0.3, 60.0, "of the click's spring, a leaf", CHOSEN)
+    leaf_width: float = dim(0.3, "mm", 0.02, 5.0, "of the leaf, across the plane", CHOSEN)
+    leaf_thickness: float = dim(0.06, "mm", 0.01, 1.0, "of the leaf", CHOSEN)
+    leaf_arm: float = dim(1.5, "mm", 0.05, 20.0, "from the click's pivot to the force of the leaf", CHOSEN)
+    leaf_force: float = dim(10.0, "mN", 0.1, 1000.0, "of the leaf, with the click on its bank", CHOSEN)
+    mainspring: float = dim(0.5, "mN·m", 0.001, 1000.0, "torque on the wheel, until its coils lie on each other", CHOSEN)
+    full: float = dim(120.0, "°", 1.0, 3600.0, "from the start until they do", "short, to be simulated")
+    bound: float = dim(4.0, "mN·m/rad", 0.01, 1e5, "stiffness of the coils that lie on each other", CHOSEN)
+    winding: float = dim(1.5, "mN·m", 0.002, 3000.0, "torque of the hand that winds", CHOSEN)
+    wound_for: float = dim(0.3, "s", 0.01, 10.0, "time for which it winds", CHOSEN)
+    viscous: float = dim(0.1, "mN·m·s/rad", 1e-5, 1000.0, "of whatever is wound: keeps the speed down", CHOSEN)
+    wheel_inertia: float = dim(50.0, "mg·cm²", 1e-3, 1e6, "wheel with what it turns", CHOSEN)
+    click_inertia: float = dim(0.5, "mg·cm²", 1e-4, 1e4, "click", CHOSEN)
+    friction: float = dim(0.1, "", 0.0, 0.3, "coefficient of friction of click and wheel", "steel on oiled steel")
+    restitution: float = dim(0.2, "", 0.0, 0.9, "coefficient of restitution", CHOSEN)
+
+
+# How far does a winding click let its wheel run back?
+#
+# The wheel is wound counter-clockwise, the click hangs from its pivot above the wheel and swings with the teeth. A point T lets
+# the nose fall behind it where nose, point and wheel's axis lie on a line, at the distance R + r from the axis:
+#
+#     cos β = (d² + l² - (R + r)²) / (2 d l)
+#
+# with the distance d of the axes and the length l of the click. The spring then swings the click to its bank. Let go, the wheel
+# runs back until a locking face meets the nose there. From one place to the other it turns by the least recoil; where the hand
+# stops elsewhere, by up to a pitch more. Millimetres, angles in degrees, the wheel's first root at 0°.
+
+
+def teeth(values: WindingClick) -> Ratchet:
+    """The ratchet wheel that has these teeth."""
+    return Ratchet(teeth=values.teeth, tip_radius=values.tip_radius, depth=values.depth, undercut=values.undercut)
+
+
+def distance(values: WindingClick) -> float:
+    """Of the axes."""
+    return values.tip_radius + values.click_length + values.nose_radius - values.reach
+
+
+def nose(values: WindingClick, angle: float) -> Point:
+    """The middle of the nose with the click at `angle`."""
+    return along((0.0, distance(values)), angle - 90.0, values.click_length)
+
+
+def lets_off(values: WindingClick) -> float:
+    """The angle of the click at which a point passes beneath its nose."""
+    d, length, out = distance(values), values.click_length, values.tip_radius + values.nose_radius
+    return -math.degrees(math.acos((d**2 + length**2 - out**2) / (2.0 * d * length)))
+
+
+def letting_off(values: WindingClick) -> float:
+    """Angle of the wheel, of which the first tooth then stands under the nose."""
+    return angle_of(nose(values, lets_off(values))) - angle_of(saw.tip(teeth(values)))
+
+
+def held(values: WindingClick) -> float:
+    """Angle of the wheel that presses the locking face of its first tooth on the nose, with the click on its bank.
+
+    ValueError where no face can.
+    """
+    middle = nose(values, values.bank)
+    foot = saw.root(teeth(values))[0] * math.sin(math.radians(values.undercut)) - values.nose_radius
+    return angle_of(middle) - math.degrees(math.asin(foot / math.hypot(*middle))) + values.undercut
+
+
+def least_recoil(values: WindingClick) -> float:
+    return letting_off(values) - held(values)
+
+
+def nose_in_teeth(values: WindingClick) -> tuple[float, float]:
+    """With the click on its bank: how far up the locking face the nose touches it, and how far it is from the back before."""
+    turn, middle = held(values), nose(values, values.bank)
+    seen = polar(math.hypot(*middle), angle_of(middle) - turn)
+    root, back = saw.root(teeth(values)), math.radians(saw.back(teeth(values)))
+    lean = math.radians(-values.undercut)
+    dx, dy = seen[0] - root[0], seen[1] - root[1]
+    return dx * math.cos(lean) + dy * math.sin(lean), dy * math.cos(back) - dx * math.sin(back) - values.nose_radius
+
+
+# What does the scene of a winding click with recoil say?
+
+BEGIN, EASE, AFTER = 0.05, 0.02, 0.13  # s: before the hand winds, over which it takes hold and lets go, and after
+
+TEXT = """\
+# A winding click with recoil, drawn to these dimensions:
+{dimensions}
+# Let go, the wheel runs back by {recoil:.6g}° at least, and by up to {pitch:.6g}° more.
+
+[scene]
+title  = "Winding click with recoil, {values.teeth} teeth"
+schema = 1
+
+[bodies.wheel]                       # on the barrel's arbor, wound counter-clockwise
+drawing  = "wheel.dxf"
+layers   = ["TEETH"]
+pivot    = ["0 mm", "0 mm"]
+angle    = "{wheel!r}°"              # a locking face on the nose
+inertia  = "{values.wheel_inertia:.15g} mg·cm²"
+
+[bodies.click]                       # goes with the teeth both ways, but for its bank
+drawing  = "click.dxf"
+layers   = ["NOSE"]
+pivot    = ["0 mm", "0 mm"]
+position = ["0 mm", "{distance!r} mm"]
+angle    = "{values.bank!r}°"
+inertia  = "{values.click_inertia:.15g} mg·cm²"
+
+[[springs]]                          # a leaf, which holds the click on its bank
+body        = "click"
+leaf        = {{ {leaf} }}
+preload     = "{preload!r} µN·m"
+stop        = "{values.bank!r}°"
+restitution = {values.restitution!r}
+
+[[torques]]                          # the mainspring; from {values.full:g}° on its coils lie on each other
+body  = "wheel"
+over  = "angle"
+table = [["{wheel!r}°", "{held:.15g} mN·m"], ["{full!r}°", "{held:.15g} mN·m"], ["{beyond!r}°", "{tight!r} mN·m"]]
+
+[[torques]]                          # the hand that winds, and lets go
+body  = "wheel"
+over  = "time"
+table = [["{t0!r} s", "0 mN·m"], ["{t1!r} s", "{wind} mN·m"], ["{t2!r} s", "{wind} mN·m"], ["{t3!r} s", "0 mN·m"]]
+
+[[damping]]
+body    = "wheel"
+viscous = "{values.viscous:.15g} mN·m·s/rad"
+
+{contacts}
+[run]
+duration  = "{duration!r} s"
+tolerance = 1e-9
+"""
+
+CONTACTS = (("click.NOSE", "wheel.TEETH"),)
+BEYOND = 1.0  # rad past the full mainspring: as far as its table goes
+
+
+def scene_text(values: WindingClick) -> str:
+    """The text of scene.toml: the click holds, the wheel is wound until its spring is full, and let go."""
+    full, times = held(values) + values.full, (BEGIN, BEGIN + EASE, BEGIN + values.wound_for, BEGIN + values.wound_for + EASE)
+    return TEXT.format(
+        dimensions=told(values),
+        values=values,
+        contacts=contact_tables(values, *CONTACTS),
+        recoil=least_recoil(values),
+        pitch=360.0 / values.teeth,
+        wheel=held(values),
+        distance=distance(values),
+        leaf=leaf_text(values),
+        preload=values.leaf_force * values.leaf_arm,  # mN·mm = µN·m
+        held=-values.mainspring,
+        full=full,
+        beyond=full + math.degrees(BEYOND),
+        tight=-(values.mainspring + values.bound * BEYOND),
+        wind=f"{values.winding:.15g}",
+        **{f"t{i}": round(time, 9) for i, time in enumerate(times)},
+        duration=round(times[3] + AFTER, 9),
+    )
+
+
+# What makes the winding click with recoil a design?
+
+FOOT = 2.5  # radius of the click about its pivot, in radii of its nose
+SHALLOWEST, STEEPEST = 0.1, 60.0  # of the depth; degrees of the click at the bank
+
+
+def draw(values: WindingClick) -> dict[str, Sheet]:
+    """The wheel; the click with its nose below the pivot, arm and foot touch nothing."""
+    r, low, wide = values.nose_radius, -values.click_length, FOOT * values.nose_radius
+    arm = rounded([(-r, low, 0.0), (r, low, 0.0), (wide, 0.0, 0.0), (-wide, 0.0, 0.0)])
+    click = [circle("NOSE", (0.0, low), r), Loop(tuple(arm), "ARM"), circle("FOOT", (0.0, 0.0), wide)]
+    return {"wheel": Sheet(tuple(ratchet.wheel(teeth(values)))), "click": Sheet(tuple(click))}
+
+
+def conflicts(values: WindingClick) -> Iterator[Conflict]:
+    """What cannot be drawn or cannot work."""
+    if values.depth >= 0.8 * values.tip_radius:
+        yield Conflict("depth", f"must be below {0.8 * values.tip_radius:.4g} mm, else no wheel is left")
+        return
+    if values.reach >= values.depth:
+        yield Conflict("reach", f"must be below the depth of the teeth, {values.depth:g} mm, else the nose meets the roots")
+        return
+    inside = values.tip_radius + values.nose_radius - SHALLOWEST * values.depth
+    if math.hypot(*nose(values, values.bank)) > inside:
+        yield Conflict("bank", "there the nose is out of the teeth: nearer to 0°, or more reach")
+        return
+    if abs(values.bank) > STEEPEST or distance(values) < values.tip_radius:
+        yield Conflict("reach", "brings the pivot of the click into the wheel: a longer click")
+        return
+    yield from _crowded(values)
+    if values.winding <= 1.05 * values.mainspring:
+        yield Conflict("winding", f"must be above {1.05 * values.mainspring:.4g} mN·m, else it does not wind the mainspring")
+
+
+def _crowded(values: WindingClick) -> Iterator[Conflict]:
+    """What keeps the nose from resting between two teeth."""
+    try:
+        along_face, free = nose_in_teeth(values)
+    except ValueError:
+        yield Conflict("nose_radius", "no locking face can meet the nose on its bank")
+        return
+    tip, root = (find(teeth(values)) for find in (ratchet.tip, ratchet.root))
+    if not 0.0 < along_face < math.dist(tip, root):
+        yield Conflict("reach", "the nose on its bank does not meet a locking face between root and point")
+    elif free < 0.0:
+        yield Conflict("nose_radius", f"the nose meets the back of a tooth before its bank, by {-free:.3g} mm")
+
+
+DESIGN = Design("winding_click", "Winding click with recoil", WindingClick, draw, scene_text, conflicts)

@@ -1,0 +1,277 @@
+"""How is motion added to a glTF scene?
+
+Each moving body has a node; an animation gives that node places and turns at key times, straight lines and shortest turns
+between them (Khronos, glTF 2.0 specification, 3.11 and appendix C).
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Iterable, Mapping, MutableMapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any, cast
+
+import numpy as np
+import shapely
+import trimesh
+from numpy.typing import NDArray
+from shapely.geometry.polygon import orient
+from trimesh.path import Path2D, entities
+from trimesh.visual import TextureVisuals
+from trimesh.visual.material import PBRMaterial
+
+from watchsim.geometry.loops import Loop, chords, polyline
+from watchsim.geometry.primitives import TURN, Arc, Edge, Line, Point
+from watchsim.geometry.solids import pieces, region
+
+# How is motion added to a glTF scene?
+
+Array = NDArray[np.float64]
+FLOAT = 5126  # the code of 32-bit floating point
+MOST_TURN = 1.5  # rad between two keys: beyond π the shortest turn would go the other way round
+
+
+@dataclass(frozen=True)
+class Track:
+    """Keys of one node: times t (n,) in s from 0 and rising, places (n, 2) in m, angles (n,) in rad without jumps by a turn."""
+
+    name: str
+    t: Array
+    places: Array
+    angles: Array
+
+
+def add_motion(tracks: Sequence[Track], buffers: MutableMapping[str, bytes], tree: MutableMapping[str, Any]) -> None:
+    """Add one animation to a scene that is being written: `buffers` and `tree` as trimesh hands them to its post-processor.
+
+    ValueError where a track turns too far between two keys.
+    """
+    nodes = {node.get("name"): number for number, node in enumerate(tree["nodes"])}
+    samplers: list[dict[str, Any]] = []
+    channels: list[dict[str, Any]] = []
+    for track in tracks:
+        if np.any(np.abs(np.diff(track.angles)) > MOST_TURN):
+            raise ValueError(f"{track.name} turns by more than {MOST_TURN} rad between two keys; give more of them")
+        number = nodes[track.name]
+        node = tree["nodes"][number]
+        node.pop("matrix", None)  # what is animated must not have one
+        values = {"translation": _translations(track), "rotation": _rotations(track)}
+        times = _accessor(f"{track.name}.t", track.t, "SCALAR", buffers, tree)
+        for path, rows in values.items():
+            node[path] = rows[0].astype(np.float32).tolist()
+            kind = "VEC3" if path == "translation" else "VEC4"
+            output = _accessor(f"{track.name}.{path}", rows, kind, buffers, tree)
+            channels.append({"sampler": len(samplers), "target": {"node": number, "path": path}})
+            samplers.append({"input": times, "output": output, "interpolation": "LINEAR"})
+    if channels:
+        tree["animations"] = [{"name": "motion", "samplers": samplers, "channels": channels}]
+
+
+def _translations(track: Track) -> Array:
+    return np.column_stack((track.places, np.zeros(len(track.t))))
+
+
+def _rotations(track: Track) -> Array:
+    """Quaternions x, y, z, w of turns about z; halves of steady angles do not jump, so that neighbours lie close together."""
+    zero = np.zeros(len(track.t))
+    return np.column_stack((zero, zero, np.sin(0.5 * track.angles), np.cos(0.5 * track.angles)))
+
+
+def _accessor(name: str, values: Array, kind: str, buffers: MutableMapping[str, bytes], tree: Mapping[str, Any]) -> int:
+    """The number of a new accessor to these values, which are appended as a buffer of their own."""
+    single = np.ascontiguousarray(values, "<f4")
+    key = f"motion.{name}"
+    buffers[key] = single.tobytes()
+    rows = single.reshape(len(single), -1)
+    tree["accessors"][key] = {
+        "bufferView": len(buffers) - 1,
+        "componentType": FLOAT,
+        "count": len(single),
+        "type": kind,
+        "min": rows.min(axis=0).tolist(),
+        "max": rows.max(axis=0).tolist(),
+    }
+    return len(tree["accessors"]) - 1
+
+
+# How do outlines and solids become trimesh's paths and meshes, and the other way round?
+#
+# Everything here is in millimetres: trimesh's own tolerances are absolute and made for numbers of that size. GLB files, which
+# are in metres by their standard, are scaled as they are written.
+
+MM = 1e3
+SAME_VERTEX = 1e-12  # m: two edges this close share a vertex, so that trimesh sees the outline closed
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A named mesh (mm, in the frame of its body) with its colour "#rrggbb" and how metallic (0 to 1) it looks."""
+
+    name: str
+    mesh: trimesh.Trimesh
+    colour: str
+    metallic: float
+
+
+@dataclass(frozen=True)
+class Placed:
+    """The pieces of one body and where the body stands: position in metres, angle in radians."""
+
+    name: str
+    pieces: Sequence[Piece]
+    position: Point = (0.0, 0.0)
+    angle: float = 0.0
+
+
+def plate(loops: Iterable[Loop], bottom: float, thickness: float, deviation: float) -> trimesh.Trimesh | None:
+    """The outlines (metres, holes kept) from the height `bottom` up by `thickness` metres; None where they have no area."""
+    return united([loops], bottom, thickness, deviation)
+
+
+def united(layers: Iterable[Iterable[Loop]], bottom: float, thickness: float, deviation: float) -> trimesh.Trimesh | None:
+    """A plate of several layers, each with its own holes, without walls where they meet; None where they have no area."""
+    whole = shapely.union_all([region(loops, deviation, MM) for loops in layers])
+    parts = [trimesh.creation.extrude_polygon(part, MM * thickness, engine="earcut") for part in pieces(whole)]
+    if not parts:
+        return None
+    mesh = _together(parts)
+    mesh.apply_translation((0.0, 0.0, MM * bottom))
+    return mesh
+
+
+def revolved(profile: Iterable[Loop], deviation: float) -> trimesh.Trimesh | None:
+    """A half profile (metres, its axis along x, material at y >= 0) turned about the z axis: x becomes the height."""
+    closed = [loop for loop in profile if loop.closed]
+    widest = max((float(polyline(loop, deviation)[:, 1].max()) for loop in closed), default=0.0)
+    if not widest > 0.0:
+        return None
+    sections = chords(Arc(0.0, 0.0, widest, 0.0, TURN), deviation)
+    parts = []
+    for part in pieces(region(closed, deviation, MM)):
+        clockwise = orient(part, -1.0)  # as revolve wants outer rings, seen so
+        for ring in (clockwise.exterior, *clockwise.interiors):
+            line = np.asarray(ring.coords)[:, ::-1].copy()  # (radius, height)
+            line[:, 0] = np.maximum(line[:, 0], 0.0)
+            parts.append(trimesh.creation.revolve(line, sections=sections))
+    return _together(parts) if parts else None
+
+
+def laid(mesh: trimesh.Trimesh, foot: Point, direction: Point, height: float) -> trimesh.Trimesh:
+    """The turned mesh with its axis in the plane through `foot` (metres) along `direction`, at the height `height` (metres)."""
+    (x, y), (ux, uy) = foot, direction
+    matrix = np.eye(4)
+    matrix[:3] = [0.0, uy, ux, MM * x], [0.0, -ux, uy, MM * y], [1.0, 0.0, 0.0, MM * height]
+    return mesh.copy().apply_transform(matrix)
+
+
+def turned_about(mesh: trimesh.Trimesh, pivot: Point, angle: float) -> trimesh.Trimesh:
+    """A copy turned by `angle` radians about the upright line through `pivot` (metres)."""
+    return mesh.copy().apply_transform(_pose(pivot, angle) @ _pose((-pivot[0], -pivot[1]), 0.0))
+
+
+def glb(bodies: Sequence[Placed], motion: Sequence[Track] = ()) -> bytes:
+    """A binary glTF scene in metres: one node per body at its pose, below it one per piece, with colours.
+
+    `motion` moves the nodes of the bodies that it names.
+    """
+    scene = trimesh.Scene()
+    for body in bodies:
+        pose = _pose(body.position, body.angle)
+        pose[:3, 3] /= MM
+        scene.graph.update(frame_from=scene.graph.base_frame, frame_to=body.name, matrix=pose)
+        for piece in body.pieces:
+            mesh = piece.mesh.copy()
+            mesh.apply_scale(1.0 / MM)
+            mesh.visual = TextureVisuals(material=_material(piece))
+            name = f"{body.name}.{piece.name}"
+            scene.add_geometry(mesh, node_name=name, geom_name=name, parent_node_name=body.name)
+    known = {body.name for body in bodies}
+    moving = [track for track in motion if track.name in known]
+    return trimesh.exchange.gltf.export_glb(scene, buffer_postprocessor=functools.partial(add_motion, moving))
+
+
+def stl(body: Placed) -> bytes:
+    """A binary STL file of all pieces of one body, millimetres, in the body's frame."""
+    return trimesh.exchange.stl.export_stl(_together([piece.mesh for piece in body.pieces]))
+
+
+def _together(parts: list[trimesh.Trimesh]) -> trimesh.Trimesh:
+    return cast(trimesh.Trimesh, trimesh.util.concatenate(parts))
+
+
+def _material(piece: Piece) -> PBRMaterial:
+    rgb = [int(piece.colour[k : k + 2], 16) for k in (1, 3, 5)]
+    return PBRMaterial(baseColorFactor=[*rgb, 255], metallicFactor=piece.metallic, roughnessFactor=0.45)
+
+
+def _pose(position: Point, angle: float) -> NDArray[np.float64]:
+    c, s = math.cos(angle), math.sin(angle)
+    x, y = MM * position[0], MM * position[1]
+    return np.array([[c, -s, 0.0, x], [s, c, 0.0, y], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]])
+
+
+def path2d(chains: Iterable[Loop]) -> Path2D:
+    """The edges as trimesh lines and three-point arcs, millimetres, layers kept, full circles closed."""
+    vertices: list[Point] = []
+    found: list[entities.Entity] = []
+
+    def vertex(p: Point) -> int:
+        vertices.append((MM * p[0], MM * p[1]))
+        return len(vertices) - 1
+
+    for chain in chains:
+        first = last = -1
+        for k, edge in enumerate(chain.edges):
+            if isinstance(edge, Arc) and edge.is_circle:
+                thirds = [vertex(edge.point(third / 3.0)) for third in range(3)]
+                found.append(entities.Arc(thirds, closed=True, layer=chain.layer))
+                continue
+            start = last if k and math.dist(chain.edges[k - 1].end, edge.start) <= SAME_VERTEX else vertex(edge.start)
+            first = start if first < 0 else first
+            back = k == len(chain.edges) - 1 and chain.closed and math.dist(edge.end, chain.edges[0].start) <= SAME_VERTEX
+            middle = [vertex(edge.point(0.5))] if isinstance(edge, Arc) else []
+            last = first if back and k else vertex(edge.end)
+            kind = entities.Arc if middle else entities.Line
+            found.append(kind([start, *middle, last], layer=chain.layer))
+    made = Path2D(entities=found, vertices=np.array(vertices, float).reshape(-1, 2), process=False)
+    made.units = "mm"
+    return made
+
+
+def edges_of(path: Path2D, scale: float) -> list[tuple[str, list[Edge]]]:
+    """For every entity of the path its layer and its lines and arcs; `scale` is metres per unit of the path.
+
+    ValueError for what is neither: curves, texts, arcs through three points in a line.
+    """
+    found = []
+    points = scale * np.asarray(path.vertices, float)
+    for number, entity in enumerate(path.entities):
+        corners = [(float(x), float(y)) for x, y in points[entity.points]]
+        edges: list[Edge] = []
+        if isinstance(entity, entities.Arc):
+            edges = [_arc(corners, bool(entity.closed), number)]
+        elif isinstance(entity, entities.Line):
+            edges = [Line(*a, *b) for a, b in pairwise(corners) if a != b]
+        else:
+            kind = type(entity).__name__
+            raise ValueError(f"entity {number} of the path is a {kind}: only lines and arcs make an outline")
+        found.append(("0" if entity.layer is None else str(entity.layer), edges))
+    return found
+
+
+def _arc(points: Sequence[Point], closed: bool, number: int) -> Arc:
+    """The arc from the first of three points through the second to the third; all the way round if `closed`."""
+    (ax, ay), (bx, by), (cx, cy) = points
+    ux, uy, vx, vy = ax - bx, ay - by, cx - bx, cy - by
+    doubled = 2.0 * (ux * vy - uy * vx)
+    if doubled == 0.0:
+        raise ValueError(f"entity {number} of the path is an arc through three points in a straight line")
+    uu, vv = ux * ux + uy * uy, vx * vx + vy * vy
+    x, y = bx + (vy * uu - uy * vv) / doubled, by + (ux * vv - vx * uu) / doubled
+    side = -math.copysign(1.0, doubled)
+    start, middle, end = (math.atan2(q - y, p - x) for p, q in points)
+    radius = math.fsum(math.dist(p, (x, y)) for p in points) / 3.0
+    sweep = TURN if closed else side * (middle - start) % TURN + side * (end - middle) % TURN
+    return Arc(x, y, radius, start, side * sweep)

@@ -1,0 +1,325 @@
+"""What does a scene amount to before anything is simulated?
+
+Echoes units, sizes, centre distances, mass, inertia and frequency, so that a wrong unit or a slipped digit is seen.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from watchsim.contact.cell_frames import named_rows
+from watchsim.contact.cells import PairCells
+from watchsim.drawing.findings import Finding
+from watchsim.geometry.loops import extents
+from watchsim.mechanism.compile import Compiled
+from watchsim.mechanism.contacts import PairCount, pair_lines, pairs_entry
+from watchsim.mechanism.overlap import overlaps
+from watchsim.mechanism.words import force_lines, law_words, length, place, turned
+from watchsim.scene.roles import frequency, keeps_time, loads, oscillators, partners, roles
+from watchsim.scene.scene import Body, Scene
+from watchsim.scene.solids import HAIRSPRING, LYING, PLATE, UPRIGHT, Solid, total
+from watchsim.scene.trains import Weighed, is_still
+from watchsim.units import metric, show, to
+
+# How many pairs of primitives are declared between two bodies, how many can ever touch, how many are candidates at a time?
+
+Integers = NDArray[np.int64]
+
+
+class ModelledPairs(NamedTuple):
+    """What a scene declares and what of it matters."""
+
+    counts: tuple[PairCount, ...]
+    reachable: Integers  # primitives (rows of the model) of which some pair can ever touch
+    candidates: Integers  # those among them of which some pair is a candidate at the start
+
+
+def modelled_pairs(compiled: Compiled, names: Sequence[str]) -> ModelledPairs:
+    """Count all pairs of bodies of a compiled scene; `names` are those of its bodies, in order."""
+    model = compiled.model
+    counts, here = [], [np.zeros(0, np.int64)]
+    for p, pair in enumerate(model.pairs):
+        near = model.near[pair.near_start : pair.near_stop]
+        around, at_start = np.array([len(near)]), near
+        if pair.listed:
+            cells = PairCells(model, p)
+            at_start = cells.here(compiled.q)
+            _, around, _ = cells.around(compiled.q)
+            if not len(around):  # beyond the cells
+                around = np.array([len(at_start)])
+        here.append(at_start)
+        bodies = (_named(compiled, pair, pair.a, names), _named(compiled, pair, pair.b, names))
+        declared = int(pair.stop - pair.start)
+        counts.append(PairCount(bodies, declared, len(near), round(float(np.median(around))), int(around.max()), len(at_start)))
+    return ModelledPairs(tuple(counts), _primitives(compiled, model.near), _primitives(compiled, np.concatenate(here)))
+
+
+def _primitives(compiled: Compiled, contacts: Integers) -> Integers:
+    """The primitives of some contacts, each once."""
+    declared = compiled.model.contacts
+    return named_rows(np.concatenate([declared.a[contacts], declared.b[contacts]]), len(compiled.model.primitives))[0]
+
+
+def _named(compiled: Compiled, pair: Any, body: int, names: Sequence[str]) -> str:
+    """What the scene calls one side of a pair: outlines fixed on a moving body keep the name of the part they belong to."""
+    contacts, primitives = compiled.model.contacts[pair.start : pair.stop], compiled.model.primitives
+    rows, _ = named_rows(np.concatenate([contacts.a, contacts.b]), len(primitives))
+    owners = [compiled.owners[row] for row in rows if primitives.body[row] == body]
+    return ", ".join(dict.fromkeys(owners)) or names[body]
+
+
+# What does a scene leave unsaid that changes its motion, and what does it say without effect?
+#
+# None of it is wrong by itself; all of it is easily overlooked. `watchsim check` lists it, `watchsim run` says it first.
+
+AT_REST = 1e-9  # rad or m, and per s: nearer than that to its rest position a body stands there
+POISED = 1e-9  # of a body's radius of gyration
+
+
+def notes(scene: Scene) -> tuple[Finding, ...]:
+    """A notice for each, with what to do."""
+    return (*_massless(scene), *_weightless(scene), *_by_outline(scene), *_unused_lift(scene), *_at_rest(scene))
+
+
+def _massless(scene: Scene) -> Iterator[Finding]:
+    """Gravity turns a pivoted body only if its mass is known; saying nothing must not pass for poise."""
+    weighed = loads(scene.bodies)[1] if any(scene.gravity) else ()
+    for body, load in zip(scene.bodies, weighed, strict=False):
+        if body.motion == "pivot" and load.mass == 0.0:
+            message = f"{body.name} has no mass, so gravity does not turn it: it counts as poised"
+            yield Finding("poised", "notice", message, f"Give mass or solids under [bodies.{body.name}] if it is not.")
+
+
+def _weightless(scene: Scene) -> Iterator[Finding]:
+    """A carrier must swing what it carries; saying nothing must not pass for no mass."""
+    for body in scene.bodies:
+        if body.on is not None and body.motion == "pivot" and body.mass == 0.0 and not is_still(scene, scene.body(body.on)):
+            message = f"{body.name} has no mass, so it adds nothing to what {body.on} weighs"
+            cure = f"Give mass or solids under [bodies.{body.name}] unless the inertia of {body.on} holds it already."
+            yield Finding("weightless", "notice", message, cure)
+
+
+def _by_outline(scene: Scene) -> Iterator[Finding]:
+    """Mass beside inertia leaves the centre of mass to the outline, which gravity then turns the body by."""
+    for body in scene.bodies if any(scene.gravity) else ():
+        entry = scene.source.get("bodies", {}).get(body.name, {})
+        written = "mass" in entry and "inertia" in entry and not {"solids", "centre_of_mass"} & set(entry)
+        if written and body.motion == "pivot" and body.on is None and _is_off(body):
+            message = (
+                f"the centre of mass of {body.name} is taken from its outline as of a uniform plate, "
+                f"{length(math.hypot(*body.centre_of_mass))} beside the pivot: gravity turns it"
+            )
+            cure = f"Write centre_of_mass under [bodies.{body.name}], or give solids; leave out mass if it is poised."
+            yield Finding("centre-of-mass", "notice", message, cure)
+
+
+def _is_off(body: Body) -> bool:
+    return math.hypot(*body.centre_of_mass) > POISED * math.sqrt(body.inertia / body.mass) if body.mass > 0.0 else False
+
+
+def _unused_lift(scene: Scene) -> Iterator[Finding]:
+    """A lift angle is what noises of the oscillator are turned into an amplitude by."""
+    if scene.lift_angle is None:
+        return
+    name = roles(scene).oscillator
+    if name is None:
+        why = "nothing swings on a spring or by gravity"
+    elif not partners(scene, name):
+        why = f"nothing may touch {name}, so no beat is heard"
+    else:
+        return
+    cure = "Leave it out, or look at [[springs]] and [[contacts]]."
+    yield Finding("lift-angle", "notice", f"timegrapher.lift_angle has no effect: {why}", cure)
+
+
+def _at_rest(scene: Scene) -> Iterator[Finding]:
+    """A clock that hangs still at the start may never begin to tick."""
+    found = oscillators(scene)
+    if not found or not keeps_time(scene):
+        return
+    one, body = found[0], scene.body(found[0].body)
+    start = body.angle if body.motion == "pivot" else 0.0
+    if abs(start - one.rest) <= AT_REST and all(abs(speed) <= AT_REST for speed in body.velocity):
+        message = f"{body.name} starts at rest in its rest position: it swings only if the drive sets it going"
+        yield Finding("at-rest", "notice", message, f"Give an angle or a velocity under [bodies.{body.name}].")
+
+
+# What does a scene amount to before anything is simulated?
+
+LENGTHS, MASSES, INERTIAS = ("mm", "m"), ("mg", "g", "kg"), ("mg·cm²", "g·cm²", "kg·m²")
+COORDINATES = {"fixed": 0, "pivot": 1, "slide": 1, "free": 3}
+
+
+def check_report(scene: Scene, pairs: Sequence[PairCount]) -> dict[str, Any]:
+    """What `check --json` prints; `pairs` holds the numbers of each pair of bodies that may touch."""
+    hertz = frequency(scene)
+    return {
+        "bodies": {
+            body.name: {**_body_entry(body), **_loaded_entry(body, load)}
+            for body, load in zip(scene.bodies, loads(scene.bodies)[1], strict=True)
+        },
+        "theory": {"frequency_hz": hertz, "vph": None if hertz is None else 7200.0 * hertz},
+        "pairs": pairs_entry(pairs),
+        "statics": {},
+        "findings": [finding.as_dict() for finding in (*scene.findings, *_overlap_findings(scene), *notes(scene))],
+    }
+
+
+def check_text(report: Mapping[str, Any], scene: Scene, function: Iterable[str] = ()) -> str:
+    """The same for people, in watch units; `function` are the lines about the geometry of function."""
+    parts = [scene.title, *_body_lines(scene), *force_lines(scene)]
+    if scene.contacts and all(finding["code"] != "overlap" for finding in report["findings"]):
+        parts.append("  nothing overlaps at the start, among all pairs that may touch")
+    parts += [*pair_lines(report["pairs"]), *function]
+    parts += [f"{finding['severity']}: {finding['message']}. {finding['fix']}".rstrip() for finding in report["findings"]]
+    return "\n".join(parts)
+
+
+def _body_entry(body: Body) -> dict[str, Any]:
+    return {
+        "mass_kg": body.mass,
+        "inertia_kg_m2": body.inertia,
+        "centre_of_mass_m": list(body.centre_of_mass),
+        "solids": [_solid_entry(solid) for solid in body.solids],
+        "position_m": list(body.position),
+        "coordinates": COORDINATES[body.motion] if body.geared is None else 0,
+        "driven": body.prescribed is not None,
+        **({"on": body.on} if body.on is not None else {}),
+        **({"geared": {"to": body.geared.to, "ratio": body.geared.ratio}} if body.geared is not None else {}),
+    }
+
+
+def _loaded_entry(body: Body, load: Weighed) -> dict[str, Any]:
+    """Of a body that carries others: what moves with its coordinate, about its origin."""
+    if body.motion == "fixed" or (load.mass, load.inertia) == (body.mass, body.inertia):
+        return {}
+    return {"loaded_mass_kg": load.mass, "loaded_inertia_kg_m2": load.inertia}
+
+
+def _solid_entry(solid: Solid) -> dict[str, Any]:
+    """Inertia about the origin of the body's frame, like that of the body."""
+    return {
+        "layer": solid.layer,
+        "kind": solid.kind,
+        "count": solid.count,
+        "bores": list(solid.bores),
+        "mass_kg": solid.weight.mass,
+        "centre_of_mass_m": list(solid.weight.centre),
+        "inertia_kg_m2": solid.weight.about((0.0, 0.0)),
+    }
+
+
+def _overlap_findings(scene: Scene) -> Iterator[Finding]:
+    for overlap in overlaps(scene):
+        x, y = (1e3 * value for value in overlap.place)
+        yield Finding("overlap", "error", str(overlap), "Move or turn one of them.", x_mm=x, y_mm=y)
+
+
+def _body_lines(scene: Scene) -> Iterator[str]:
+    width = max(len(body.name) for body in scene.bodies)
+    for body, load in zip(scene.bodies, loads(scene.bodies)[1], strict=True):
+        yield f"  {body.name:{width}}  {body.motion:5}  " + ", ".join((_place(body), _size(body), *_weights(body)))
+        yield from _load_lines(scene, body, load)
+        yield from _solid_lines(body)
+        yield from _poise_lines(scene, body, load)
+
+
+def _solid_lines(body: Body) -> Iterator[str]:
+    """Every solid with what it adds, and their sum: what a designer checks a wrong density by."""
+    if not body.solids:
+        return
+    rows = [
+        (solid.name + (f" × {solid.count}" if solid.count > 1 else ""), _kind(solid), solid.weight) for solid in body.solids
+    ]
+    whole = total(body.solids)
+    if whole is not None:
+        rows.append(("together", "", whole))
+    width, kinds = max(len(row[0]) for row in rows), max(len(row[1]) for row in rows)
+    for name, kind, weight in rows:
+        x, y = (_millimetres(value) for value in weight.centre)
+        inertia = _fitting(weight.about((0.0, 0.0)), INERTIAS)
+        mass = _fitting(weight.mass, MASSES, 1e3)
+        yield f"      {name:{width}}  {kind:{kinds}}  {mass:>12}  {inertia:>16}  centre ({x}, {y}) mm"
+
+
+def _millimetres(value: float) -> str:
+    """To the nanometre, so that rounding does not look like a place."""
+    return f"{round(to(value, 'mm'), 6) + 0.0:.6f}".rstrip("0").rstrip(".")
+
+
+def _kind(solid: Solid) -> str:
+    """Of what shape, in words."""
+    return {
+        PLATE: f"plate of {show(solid.thickness, 'mm')}" + _less(len(solid.drilled)),
+        UPRIGHT: "turned, upright on the pivot",
+        LYING: "turned, lying",
+        HAIRSPRING: "hairspring, one third",
+    }[solid.kind]
+
+
+def _less(bores: int) -> str:
+    return f" less {bores} bore{'' if bores == 1 else 's'}" if bores else ""
+
+
+def _poise_lines(scene: Scene, body: Body, load: Weighed) -> Iterator[str]:
+    """What a centre of mass beside the pivot does: gravity turns the body; the pull on the pivot itself moves nothing."""
+    moment = math.hypot(*load.moment)
+    distance = moment / load.mass if load.mass > 0.0 else 0.0
+    if body.motion != "pivot" or body.prescribed is not None or distance <= POISED * (_reach(body) or distance):
+        return
+    pull = math.hypot(*scene.gravity)
+    whose = "the common" if load.mass > body.mass else "its"
+    what = f"{whose} centre of mass lies {length(distance)} beside the pivot"
+    if pull > 0.0:
+        yield f"      {what}: gravity turns it with up to {metric(moment * pull, 'N·m')}"
+    else:
+        yield f"      {what}; the scene has no gravity, so this does nothing"
+
+
+def _reach(body: Body) -> float:
+    """Half the larger side of the box around everything drawn."""
+    box = extents((*body.loops, *body.decoration))
+    return 0.5 * max(box[2] - box[0], box[3] - box[1]) if box else 0.0
+
+
+def _place(body: Body) -> str:
+    on = f"on {body.on} " if body.on is not None else ""
+    return f"{on}at ({place(body.position[0])}, {place(body.position[1])}), turned by {turned(body.angle)}"
+
+
+def _size(body: Body) -> str:
+    """Width and height of all outlines as drawn."""
+    box = extents(body.loops)
+    if box is None:
+        return "no outline"
+    return f"{_fitting(box[2] - box[0], LENGTHS)} × {_fitting(box[3] - box[1], LENGTHS)}"
+
+
+def _weights(body: Body) -> Iterator[str]:
+    if body.prescribed is not None:
+        yield law_words(body)
+        return
+    if (body.motion != "fixed" or body.on is not None) and body.mass > 0.0:
+        yield f"mass {_fitting(body.mass, MASSES, 1e3)}"
+    if body.motion in ("pivot", "free"):
+        yield f"inertia {_fitting(body.inertia, INERTIAS)}"
+
+
+def _load_lines(scene: Scene, body: Body, load: Weighed) -> Iterator[str]:
+    """What a body weighs together with what it carries."""
+    carried = [other.name for other in scene.bodies if other.on == body.name and other.mass > 0.0]
+    if body.motion == "fixed" or not carried:
+        return
+    weights = [f"mass {_fitting(load.mass, MASSES, 1e3)}"] if load.mass > 0.0 else []
+    weights += [f"inertia {_fitting(load.inertia, INERTIAS)}"] if body.motion != "slide" else []
+    yield f"      with {' and '.join(carried)}: {', '.join(weights)}"
+
+
+def _fitting(value: float, units: tuple[str, ...], most: float = 1e4) -> str:
+    """In the first unit in which it is less than that."""
+    return show(value, next((unit for unit in units if abs(to(value, unit)) < most), units[-1]), 5)

@@ -1,0 +1,622 @@
+"""Which contacts are closed while a page plays, where, and how hard do they press?"""
+
+from __future__ import annotations
+
+import base64
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from watchsim.analysis.forces import Forces, forces
+from watchsim.analysis.phases import Phase
+from watchsim.analysis.timegrapher import noises
+from watchsim.geometry.loops import Loop
+from watchsim.geometry.primitives import Arc
+from watchsim.render.marks import ContactMarks, Side, goes_round
+from watchsim.render.movie import busy
+from watchsim.render.palette import BLUED, FIXED, Finish, looks
+from watchsim.render.parts import Part, is_round, loops_of, outline, parts
+from watchsim.render.rows import kept_rows
+from watchsim.render.view import (
+    COARSE,
+    SHARES,
+    SIDES,
+    STUD,
+    Frame,
+    Hairspring,
+    View,
+    Window,
+    Zigzag,
+    hairsprings,
+    recorded,
+    room_of,
+    sampled,
+    size_of,
+    stretch,
+    view,
+    zigzags,
+)
+from watchsim.scene.roles import frequency, keeps_time, roles
+from watchsim.scene.scene import Body, Scene
+from watchsim.scene.trains import carried_last, is_still
+from watchsim.simulation.state import EventKind
+from watchsim.simulation.trajectory import Array, Trajectory, between
+from watchsim.storage.columns import rows_where
+from watchsim.units import metric
+
+# How do arrays travel in a page?
+#
+# As little-endian binary in base64: a fourth of the size of digits, and read back bit by bit.
+
+
+def doubles(values: ArrayLike) -> str:
+    """Times: differences of nanoseconds must survive beside hours."""
+    return _text(np.asarray(values, "<f8"))
+
+
+def floats(values: ArrayLike) -> str:
+    """Everything else, of which 7 digits are enough."""
+    return _text(np.asarray(values, "<f4"))
+
+
+def small(values: ArrayLike) -> str:
+    """Codes from 0 to 255."""
+    return _text(np.asarray(values, "u1"))
+
+
+def _text(values: np.ndarray) -> str:
+    return base64.b64encode(np.ascontiguousarray(values).tobytes()).decode("ascii")
+
+
+# What does a page draw of every part?
+#
+# The very lines and arcs of the drawing, as codes and numbers for a canvas, and once more as a still picture in SVG, which
+# prints, and which stands there where a mail program runs no scripts.
+
+MOVE, LINE, ARC, CLOSE = range(4)
+ROUGH = 1e-3  # of the picture: chords where only the order and the nesting of parts matter
+HATCH = 0.01  # of the picture: distance of hatch strokes
+MOST_STROKES = 4000  # along the longest open outline
+
+
+def drawn_parts(scene: Scene, size: float) -> tuple[Part, ...]:
+    """All parts of a scene, largest first; `size` (m) is that of the picture."""
+    longest = max((loop.length for body in scene.bodies for loop in loops_of(body) if not loop.closed), default=0.0)
+    return parts(scene, ROUGH * size, max(HATCH * size, longest / MOST_STROKES))
+
+
+def packed_part(part: Part, bodies: Sequence[str]) -> dict[str, object]:
+    """Codes and numbers of a part, in metres and radians in its body's frame."""
+    codes, numbers = _instructions(part.outlines)
+    found: dict[str, object] = {
+        "body": bodies.index(part.body),
+        "layer": part.layer,
+        "fill": part.finish.fill,
+        "edge": part.finish.edge,
+        "codes": small(codes),
+        "numbers": floats(numbers),
+    }
+    if part.finish.pale:
+        found["pale"] = True
+    if part.ground:
+        strokes = np.zeros(0) if part.strokes is None else np.asarray(part.strokes.vertices).reshape(-1)
+        found["ground"] = floats(strokes)
+    return found
+
+
+def _instructions(loops: Sequence[Loop]) -> tuple[list[int], list[float]]:
+    """MOVE x y, LINE x y, ARC x y radius start sweep, CLOSE."""
+    codes: list[int] = []
+    numbers: list[float] = []
+    for loop in loops:
+        codes.append(MOVE)
+        numbers += loop.edges[0].start
+        for edge in loop.edges:
+            if isinstance(edge, Arc):
+                codes.append(ARC)
+                numbers += (edge.x, edge.y, edge.radius, math.remainder(edge.start_angle, math.tau), edge.sweep)
+            else:
+                codes.append(LINE)
+                numbers += edge.end
+        if loop.closed:
+            codes.append(CLOSE)
+    return codes, numbers
+
+
+def path_data(loops: Sequence[Loop]) -> str:
+    """The same as SVG path data, in mm."""
+    return "".join(piece for loop in loops for piece in _path(loop))
+
+
+def _path(loop: Loop) -> Iterator[str]:
+    yield f"M{_place(loop.edges[0].start)}"
+    for edge in loop.edges:
+        if not isinstance(edge, Arc):
+            yield f"L{_place(edge.end)}"
+            continue
+        radius, turn = _number(edge.radius), int(edge.sweep > 0.0)
+        # An arc is given by its ends: of a circle they are the same, and near half a turn they say little about the centre.
+        pieces = math.ceil(abs(edge.sweep) / (0.75 * math.pi))
+        for k in range(1, pieces + 1):
+            yield f"A{radius} {radius} 0 0 {turn} {_place(edge.point(k / pieces))}"
+    if loop.closed:
+        yield "Z"
+
+
+def _place(point: tuple[float, float]) -> str:
+    return f"{_number(point[0])} {_number(point[1])}"
+
+
+def _number(metres: float) -> str:
+    return f"{1e3 * metres:.6f}".rstrip("0").rstrip(".")
+
+
+# Which rows of a run must a page hold, so that every outline stands where the run has it?
+#
+# Each body keeps rows of its own: a locked wheel needs none while the balance swings. Between rows the page interpolates as
+# `Trajectory.sample` does, by quintics through q, u and a.
+
+FINE, COARSEST = 5e-7, 1e-3  # of the picture's size: what outlines may be off, at first, and where there is too much to keep
+LEAST_ARM = 0.25  # of the picture's size
+STEP = 4.0  # from one try to the next coarser one
+MOST = 360_000  # bytes of motion, before they are put into text
+SLOPE, CURVE = 1e-4, 2e-3  # of their largest values: what velocities and accelerations may be off where FINE holds
+
+
+class TooMuch(ValueError):
+    """The window holds more motion than a page can."""
+
+
+@dataclass(frozen=True)
+class Channel:
+    """Rows of one body: t (s), and for its coordinates q - base, u, a, (rows, 3n)."""
+
+    body: str
+    t: Array
+    base: Array
+    values: Array
+
+    @property
+    def bytes(self) -> int:
+        return 8 * len(self.t) + 4 * self.values.size
+
+    def packed(self) -> dict[str, object]:
+        return {"t": doubles(self.t), "base": self.base.tolist(), "rows": floats(self.values)}
+
+
+def channels(run: Trajectory, window: Window, size: float) -> tuple[list[Channel], float]:
+    """Rows of every moving body for a window, and how far outlines are off at most (m); `size` (m) is the picture's.
+
+    TooMuch where that would be more than a thousandth of the picture.
+    """
+    first = max(int(np.searchsorted(run.t, window[0], side="right")) - 1, 0)
+    last = min(int(np.searchsorted(run.t, window[1], side="left")) + 1, len(run.t))
+    t = run.t[first:last]
+    middle = 0.5 * (t[:-1] + t[1:])
+    halfway = run.sample(middle)
+    kept = slice(first, last)
+    told = [_of(run, body, kept, middle, *halfway) for body in run.scene.bodies if body.name in run.slices]
+    share = FINE
+    while share <= COARSEST:
+        found, taken = [], 0
+        for one in told:
+            found.append(_channel(one, _weights(run, one.body, LEAST_ARM * size), share * size, share / FINE))
+            taken += found[-1].bytes
+            if taken > MOST:
+                break
+        if taken <= MOST:
+            return found, share * size
+        share *= STEP
+    raise TooMuch(
+        f"{window[0]:.9g} s to {window[1]:.9g} s hold more motion than a page can, which is {MOST / 1e3:.0f} kB of it; "
+        "choose a shorter window"
+    )
+
+
+@dataclass(frozen=True)
+class _Told:
+    """What the run says of one body: q, u, a (rows, n) at times t, and q, u midway between rows."""
+
+    body: Body
+    t: Array
+    q: Array
+    u: Array
+    a: Array
+    middle: Array
+    q_middle: Array
+    u_middle: Array
+
+
+def _of(run: Trajectory, body: Body, kept: slice, middle: Array, q_middle: Array, u_middle: Array) -> _Told:
+    """The columns of that body, of the rows `kept` and midway between them."""
+    own = run.slices[body.name]
+    rows = run.t[kept], run.q[kept, own], run.u[kept, own], run.a[kept, own]
+    return _Told(body, *rows, middle, q_middle[:, own], u_middle[:, own])
+
+
+def _channel(told: _Told, weight: Array, off: float, looser: float) -> Channel:
+    """The rows of one body; outlines may be off by `off` metres, velocities by `looser` times their share.
+
+    `weight` says how many metres an outline moves per unit of each coordinate.
+    """
+    t, q, u, a, middle = told.t, told.q, told.u, told.a, told.middle
+    largest = [np.maximum(np.abs(values).max(axis=0, initial=0.0), 1e-300) for values in (u, a)]
+    noise = np.zeros(q.shape[1])
+
+    def fits(i: int, j: int) -> bool:
+        h = t[j] - t[i]
+        if h <= 0.0:
+            return True  # rows of one instant, between which nothing of note has happened to this body
+        times = np.concatenate((t[i + 1 : j], middle[i:j]))
+        s = ((times - t[i]) / h)[:, None]
+        place, rate = between(s, np.full_like(s, h), (q[i], u[i], a[i]), (q[j], u[j], a[j]), noise)
+        if np.max(np.abs(place - np.concatenate((q[i + 1 : j], told.q_middle[i:j]))) @ weight) > off:
+            return False
+        if np.any(np.abs(rate - np.concatenate((u[i + 1 : j], told.u_middle[i:j]))) > looser * SLOPE * largest[0]):
+            return False
+        pull = _acceleration(s[: j - i - 1], h, (u[i], a[i]), (u[j], a[j]))
+        return not np.any(np.abs(pull - a[i + 1 : j]) > looser * CURVE * largest[1])
+
+    # Both rows of an impact that this body has felt; those of the others' are rows like any.
+    felt = np.any(np.abs(np.diff(u, axis=0)) > looser * SLOPE * largest[0], axis=1)
+    felt |= np.any(np.abs(np.diff(a, axis=0)) > looser * CURVE * largest[1], axis=1)
+    jumps = np.flatnonzero((np.diff(t) <= 0.0) & felt)
+    kept = kept_rows(len(t), fits, (*jumps.tolist(), *(jumps + 1).tolist()))
+    kept = _without_repeats(kept, q, u, a)
+    base = q[0] if len(q) else np.zeros(q.shape[1])
+    return Channel(told.body.name, t[kept], base, np.hstack((q[kept] - base, u[kept], a[kept])))
+
+
+def _acceleration(s: Array, h: float, left: tuple[Array, Array], right: tuple[Array, Array]) -> Array:
+    """The slope of the cubic in u: what the page draws as force or torque."""
+    way = (right[0] - left[0]) / h
+    return left[1] + s * (6.0 * way - 4.0 * left[1] - 2.0 * right[1] + s * (3.0 * (left[1] + right[1]) - 6.0 * way))
+
+
+def _without_repeats(kept: NDArray[np.int64], q: Array, u: Array, a: Array) -> NDArray[np.int64]:
+    """Without the rows of events at which this body did not notice anything, if those around them show the same rest."""
+    if len(kept) < 3:
+        return kept
+    values = np.hstack((q[kept], u[kept], a[kept]))
+    same = np.all(values[1:] == values[:-1], axis=1) & np.all(u[kept][1:] == 0.0, axis=1) & np.all(a[kept][1:] == 0.0, axis=1)
+    inner = np.concatenate(([False], same[:-1] & same[1:], [False]))
+    return kept[~inner]
+
+
+def _weights(run: Trajectory, body: Body, least: float) -> Array:
+    """How far (m) an outline of the body, or of one that it carries, moves per unit of each coordinate.
+
+    Angles count as if every body reached at least `least` metres: they are read as numbers, too.
+    """
+    if body.motion == "slide":
+        return np.ones(1)
+    arm = max(_reach(run, body), least)
+    return np.array([arm]) if body.motion == "pivot" else np.array([1.0, 1.0, arm])
+
+
+def _reach(run: Trajectory, body: Body) -> float:
+    """The largest distance (m) of a point that moves with the body from its origin."""
+    loops = loops_of(body)
+    points = outline(loops, COARSE * size_of(body)) if loops else np.zeros((1, 2))
+    carried = (one for one in run.scene.bodies if one.on == body.name)
+    loads = [float(np.hypot(*one.position)) + _reach(run, one) for one in carried]
+    return max(float(np.hypot(points[:, 0], points[:, 1]).max()), *loads, 0.0)
+
+
+# When does something happen: events to step to, phases with names, and noises?
+
+WORDS = {
+    EventKind.IMPACT: "impact",
+    EventKind.CLOSE: "closes",
+    EventKind.OPEN: "opens",
+    EventKind.STICK: "sticks",
+    EventKind.SLIDE: "slides",
+    EventKind.ACCUMULATION: "comes to rest after rebounds",
+    EventKind.TURN: "turning point",
+    EventKind.CROSS: "rest position",
+    EventKind.JAM: "jams",
+}
+MOST_MOMENTS = 3000  # instants
+NAMED = 3  # events of one instant that are put into words
+FAINT = 1e-4  # of the loudest noise: cannot be heard
+
+
+def instants(run: Trajectory, window: Window) -> list[list[Any]]:
+    """[t (s), what happens] for every instant with events, in order; the faintest left out where there are too many."""
+    start, end = window
+    events = rows_where(
+        run.events, lambda part: (part["t"] >= start) & (part["t"] <= end) & (part["kind"] != EventKind.HANDOVER)
+    )
+    times, place = np.unique(events["t"], return_inverse=True)
+    if len(times) > MOST_MOMENTS:
+        loud = np.zeros(len(times))
+        np.maximum.at(loud, place, np.where(events["kind"] == EventKind.IMPACT, events["energy_lost"], np.inf))
+        chosen = np.zeros(len(times), bool)
+        chosen[np.argsort(-loud, kind="stable")[:MOST_MOMENTS]] = True
+        events, times = events[chosen[place]], times[chosen]
+    names = [body.name for body in run.scene.bodies]
+    starts = np.searchsorted(events["t"], times)
+    return [
+        [float(t), _words(run, events[i:j], names)]
+        for t, (i, j) in zip(times, pairwise([*starts.tolist(), len(events)]), strict=True)
+    ]
+
+
+def _words(run: Trajectory, events: Any, names: list[str]) -> str:
+    told = list(dict.fromkeys(_one(run, event, names) for event in events))
+    more = len(told) - NAMED
+    return "; ".join(told[:NAMED]) + (f"; {more} more" if more > 0 else "")
+
+
+def _one(run: Trajectory, event: Any, names: list[str]) -> str:
+    kind = EventKind(int(event["kind"]))
+    if event["contact"] < 0:
+        return f"{names[event['body']]}: {WORDS[kind]}" if event["body"] >= 0 else WORDS[kind]
+    pair = run.pairs[int(event["contact"])]
+    lost = f", {metric(float(event['energy_lost']), 'J', 2)} lost" if kind == EventKind.IMPACT else ""
+    return f"{pair.body_a} {pair.layer_a} / {pair.body_b} {pair.layer_b}: {WORDS[kind]}{lost}"
+
+
+def heard(run: Trajectory, window: Window) -> dict[str, str]:
+    """Noises of the window: t (s) and loudness, 1 for the loudest; energies (J) go with the square of it."""
+    times, energies = noises(run, *window)
+    energies = np.maximum(energies, 0.0)
+    loudest = float(energies.max(initial=0.0))
+    if loudest <= 0.0:
+        return {"t": doubles([]), "loud": floats([])}
+    audible = energies >= FAINT * loudest
+    return {"t": doubles(times[audible]), "loud": floats(np.sqrt(energies[audible] / loudest))}
+
+
+def named(found: list[Phase], window: Window) -> list[list[Any]]:
+    """[name, start, end] of the phases that reach into the window."""
+    return [[phase.name, phase.start, phase.end] for phase in found if phase.end > window[0] and phase.start < window[1]]
+
+
+# Which stretch of a run does its page play?
+
+BEATS = 10
+WHOLE = 0.95  # of what was recorded: nearly all of it is shown as all of it
+
+
+def shown(run: Trajectory, window: Sequence[float] | None) -> Window:
+    """As asked; by default the last ten beats, or all of the last unbroken stretch where nothing keeps time.
+
+    ValueError where the window is empty or was not recorded.
+    """
+    if window is not None:
+        return stretch(run, window)
+    start, end = recorded(run)[-1]
+    hertz = frequency(run.scene) if keeps_time(run.scene) else None
+    beats = 0.5 * BEATS / hertz if hertz else 0.0
+    if 0.0 < beats < WHOLE * (end - start):
+        start = end - beats
+    return stretch(run, (start, end)) if start < end else stretch(run, None)
+
+
+# Which contacts are closed while a page plays, where, and how hard do they press?
+
+EVENLY = 600  # instants besides those of rows and events at which forces are asked for
+MOST_TOUCHING = 6000  # instants in all
+JUST = 1e-7  # of the time between two events: so long before the second the first one's contacts still hold
+OFF = 2e-3  # of a contact's largest force: what a force may be off between the instants that are kept
+CROWD = 16.0  # contacts closed at a time, on average: forces of a heap take minutes, and nobody could read them
+
+
+def touching(run: Trajectory, window: Window) -> list[dict[str, Any]]:
+    """For every contact that is closed some time in the window: its two sides, from when to when, and forces there.
+
+    Forces are left out of a heap, and where the run does not hold them (steps of fixed length, events not kept).
+    """
+    try:
+        marks = ContactMarks(run)
+    except ValueError:
+        return []
+    closed = {number: marks.stretches(number, window) for number in marks.numbers}
+    closed = {number: found for number, found in closed.items() if found}
+    told = None if _crowd(closed, window) > CROWD else _forces(run, window, closed)
+    names = [body.name for body in run.scene.bodies]
+    return [
+        {
+            **_sides(marks.sides(number), names),
+            "name": _name(run, number),
+            "closed": doubles(np.array(stretches).reshape(-1)),
+            **(_samples(told, number, stretches) if told is not None else {}),
+        }
+        for number, stretches in closed.items()
+    ]
+
+
+def _crowd(closed: dict[int, list[Window]], window: Window) -> float:
+    """How many contacts are closed at a time, on average."""
+    return sum(end - start for stretches in closed.values() for start, end in stretches) / (window[1] - window[0])
+
+
+def _sides(sides: tuple[Side, Side], names: Sequence[str]) -> dict[str, Any]:
+    """The circle of the one, and the circle or line of the other, in their bodies' frames."""
+    a, b = sides
+    found: dict[str, Any] = {"a": [names.index(a.body), a.x, a.y, a.radius], "b": [names.index(b.body), b.x, b.y, b.side]}
+    if b.normal is not None:
+        found["normal"] = list(b.normal)
+    return found
+
+
+def _name(run: Trajectory, number: int) -> str:
+    pair = run.pairs[number]
+    return f"{pair.body_a}.{pair.layer_a} / {pair.body_b}.{pair.layer_b}"
+
+
+def _forces(run: Trajectory, window: Window, closed: dict[int, list[Window]]) -> Forces | None:
+    """Forces at rows, right after and right before every event, and evenly between."""
+    changes = np.unique([t for stretches in closed.values() for stretch in stretches for t in stretch])
+    edges = np.unique(np.concatenate(([window[0]], changes[(changes > window[0]) & (changes < window[1])], [window[1]])))
+    before = edges[1:] - np.maximum(JUST * np.diff(edges), np.spacing(edges[1:]))
+    rows = run.t[(run.t > window[0]) & (run.t < window[1])]
+    rows = rows[:: max(1, len(rows) // (MOST_TOUCHING // 2))]
+    times = np.unique(np.concatenate((edges[:-1], before, rows, np.linspace(*window, EVENLY))))
+    times = times[:: max(1, len(times) // MOST_TOUCHING)]
+    try:
+        return forces(run, times)
+    except ValueError:
+        return None
+
+
+def _samples(told: Forces, number: int, stretches: list[Window]) -> dict[str, str]:
+    """Time, normal and tangential force (N) while the contact is closed, as few as straight lines between them allow."""
+    column = np.flatnonzero(told.pairs == number)
+    if len(column) == 0:
+        return {}
+    t, values = told.t, np.column_stack((told.normal[:, column[0]], told.tangential[:, column[0]]))
+    held = np.isfinite(told.point[:, column[0], 0])
+    rows: list[NDArray[np.int64]] = []
+    for start, end in stretches:
+        inside = np.flatnonzero(held & (t >= start) & (t < end))
+        if len(inside):
+            rows.append(inside[_thinned(t[inside], values[inside])])
+    if not rows:
+        return {}
+    kept = np.concatenate(rows)
+    return {"t": doubles(t[kept]), "force": floats(values[kept])}
+
+
+def _thinned(t: Array, values: Array) -> NDArray[np.int64]:
+    allowed = OFF * max(float(np.abs(values).max()), 1e-300)
+
+    def fits(i: int, j: int) -> bool:
+        s = ((t[i + 1 : j] - t[i]) / (t[j] - t[i]))[:, None]
+        return bool(np.all(np.abs(values[i] + s * (values[j] - values[i]) - values[i + 1 : j]) <= allowed))
+
+    return kept_rows(len(t), fits)
+
+
+# What does the player of a page need to know of a run?
+
+WIDE, HIGH = 1280.0, 720.0  # of the picture by which up and the part to follow are chosen
+
+
+def picture_size(run: Trajectory, window: Window) -> float:
+    """The width (m) of what is in sight."""
+    return WIDE / view(run, window, Frame(0.0, 0.0, WIDE, HIGH), None, None).scale
+
+
+def player_data(
+    run: Trajectory, window: Window, moved: list[Channel], parts: tuple[Part, ...], phases: list[Phase], opening: float
+) -> dict[str, Any]:
+    """Everything that is drawn, played, plotted and heard; lengths in metres, angles in radians, times in seconds."""
+    scene = run.scene
+    names = [body.name for body in scene.bodies]
+    rows = {channel.body: channel.packed() for channel in moved}
+    found = roles(scene)
+    return {
+        "title": scene.title,
+        "window": list(window),
+        "opening": opening,
+        "bodies": [_body(run, window, body, looks(scene)[body.name], rows.get(body.name)) for body in scene.bodies],
+        "order": [names.index(body.name) for body in carried_last(scene.bodies)],
+        "parts": [packed_part(part, names) for part in parts],
+        "coils": [_coil(spring, names) for spring in hairsprings(scene)],
+        "line_springs": [_zigzag(spring, names) for spring in zigzags(scene)],
+        "view": _view(run, window),
+        "contacts": touching(run, window),
+        "events": instants(run, window),
+        "phases": named(phases, window),
+        "busy": [list(span) for span in busy(run, phases, window)],
+        "sound": heard(run, window),
+        "ranks": [names.index(name) for name in (found.oscillator, found.lever, found.wheel) if name is not None],
+    }
+
+
+def _coil(spring: Hairspring, names: list[str]) -> dict[str, Any]:
+    """A hairspring, and in which colours it, its collet and its stud are drawn (on light and on dark ground)."""
+    coil = spring.coil
+    return {
+        "body": names.index(spring.body),
+        "on": -1 if spring.on is None else names.index(spring.on),
+        "rest": spring.rest,
+        "inner": coil.inner,
+        "outer": coil.outer,
+        "turns": coil.turns,
+        "stud": coil.stud,
+        "width": coil.width,
+        "block": STUD,
+        "colours": [BLUED.line, BLUED.fill],
+        "held": FIXED.fill,
+    }
+
+
+def _zigzag(spring: Zigzag, names: list[str]) -> dict[str, Any]:
+    """A spring between points, and in which colours it is drawn (on light and on dark ground)."""
+    return {
+        "bodies": [-1 if name is None else names.index(name) for name in spring.between],
+        "points": [point.tolist() for point in spring.points],
+        "half": spring.half,
+        "shares": SHARES.tolist(),
+        "sides": SIDES.tolist(),
+        "colours": [BLUED.line, BLUED.fill],
+    }
+
+
+def _body(run: Trajectory, window: Window, body: Body, look: Finish, rows: dict[str, object] | None) -> dict[str, Any]:
+    scene = run.scene
+    carries = any(other.on == body.name for other in scene.bodies)
+    told: dict[str, Any] = {
+        "name": body.name,
+        "motion": body.motion,
+        "on": -1 if body.on is None else [one.name for one in scene.bodies].index(body.on),
+        "at": [*body.position, body.angle],
+        "axis": list(body.axis),
+        "still": is_still(scene, body),
+        "line": look.line,
+        "fill": look.fill,
+        "size": size_of(body) if loops_of(body) else 0.0,
+    }
+    if rows is not None:
+        told["rows"] = rows
+        own = sampled(run, body, window)[:, 2]
+        carrier = 0.0 if body.on is None else sampled(run, scene.body(body.on), window)[:, 2]
+        told["round"] = body.motion != "slide" and body.name != roles(scene).oscillator and goes_round(own - carrier)
+    # Mass times acceleration is a force only where nothing else rides along.
+    if body.on is None and not carries and body.motion != "fixed":
+        told["inertia"] = body.inertia if body.motion == "pivot" else body.mass
+    if loops_of(body) and is_round(body):
+        told["spoke"] = _spoke(body)
+    return told
+
+
+def _spoke(body: Body) -> list[float]:
+    """From where to where along its x axis a radius is drawn on a body whose turning could not be seen."""
+    radii = [edge.radius for loop in loops_of(body) if loop.hole for edge in loop.edges if hasattr(edge, "radius")]
+    bore, reach = max(radii, default=0.0), 0.5 * size_of(body)
+    return [bore, bore + 0.9 * (reach - bore)]
+
+
+def _view(run: Trajectory, window: Window) -> dict[str, Any]:
+    """The room to be shown, and its turn; where a part is followed, its track and how much of it is in sight."""
+    chosen: View = view(run, window, Frame(0.0, 0.0, WIDE, HIGH), None, None)
+    points, _, traveller = room_of(run, window, None)
+    free = not any(run.scene.gravity) and traveller is None
+    told: dict[str, Any] = {
+        "turn": chosen.turn,
+        "free": free,  # up may be chosen to fit the screen
+        "boxes": [[turn, *_box(points, turn)] for turn in ((0.0, -0.5 * np.pi) if free else (chosen.turn,))],
+    }
+    if chosen.follow is not None:
+        told["follow"] = {
+            "body": [body.name for body in run.scene.bodies].index(chosen.follow),
+            "centre": list(chosen.centre),
+            "track": list(chosen.track),
+            "sight": HIGH / chosen.scale,
+        }
+    return told
+
+
+def _box(points: Array, turn: float) -> list[float]:
+    """Least and largest x and y (m) of the points as the turned picture shows them."""
+    c, s = float(np.cos(turn)), float(np.sin(turn))
+    seen = points @ np.array([[c, s], [-s, c]])
+    return [*seen.min(axis=0).tolist(), *seen.max(axis=0).tolist()]

@@ -1,0 +1,370 @@
+"""What does the timing sheet of a page say? The numbers of summary.json, in a watchmaker's units and order."""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from watchsim.analysis.energy import energy_shares
+from watchsim.analysis.headlines import expected_text, headlines
+from watchsim.analysis.phases import Phase, each_phase
+from watchsim.analysis.timing import Beats, beats
+from watchsim.escapement.function_report import Table, measured, tables
+from watchsim.escapement.measure import measure
+from watchsim.pages.charts import Dots, bars, scatter, strip
+from watchsim.pages.html import Content, Markup, element, joined, section, table
+from watchsim.render.marks import decimals_for, signed
+from watchsim.scene.roles import swings
+from watchsim.scene.scene import Scene
+from watchsim.simulation.trajectory import Array, Trajectory
+from watchsim.units import metric
+
+# What does the sheet say of the geometry of function: lock, draw, lift, drop, and the freedoms of the safety action?
+
+HEAD = ("quantity", "entry stone", "exit stone")
+STONES = "stones and wheel"
+MINUS, DASH = "\N{MINUS SIGN}", "\N{EN DASH}"
+BOTH = 2  # values of a row: of entry and of exit
+
+
+def function_tables(scene: Scene) -> Iterator[Markup]:
+    """The section, measured by turning the parts of the scene by hand as `check` does; nothing of a scene without stones."""
+    found = measure(scene)
+    if found.pallets is None:
+        return
+    note = f"Measured on the drawing: {measured(found)}."
+    missing = [element("p", f"Not measured: {what}, {why}.", class_="note") for what, why in found.missing]
+    measures = element("div", *map(_table, tables(found)), class_="columns")
+    yield section("function", "Geometry of function", element("p", note, class_="note"), measures, *missing)
+
+
+def _table(one: Table) -> Markup:
+    worst = any(row.worst for row in one.rows)
+    rows: list[list[Content]] = []
+    for row in one.rows:
+        words = row.words.strip()
+        name = element("span", words, class_="of") if row.words != words else words
+        values = [_printed(value) for value in row.values]
+        values += [""] * (BOTH - len(values))
+        rows.append([name, *values, *([row.worst] if worst else [])])
+    return table((*HEAD, "worst tooth") if worst else HEAD, rows, (one.title or STONES).capitalize())
+
+
+def _printed(value: str) -> str:
+    return DASH if value == "-" else value.replace("-", MINUS)
+
+
+# What was simulated, as a list that a person can check against a drawing?
+
+LONG = 6  # entries of a list that are written out
+LEFT_OUT = ("lock", "expect")  # shown elsewhere
+ROWS = 400
+
+
+def parameters(scene: Scene) -> list[tuple[str, str]]:
+    """(dotted path, value) of everything the scene file says, in its order; as in `--set`."""
+    rows = [row for key, value in scene.source.items() if key not in LEFT_OUT for row in _rows(key, value)]
+    if len(rows) > ROWS:
+        return [*rows[:ROWS], ("…", f"{len(rows) - ROWS} more, in the scene file")]
+    return rows
+
+
+def _rows(path: str, value: Any) -> Iterator[tuple[str, str]]:
+    if isinstance(value, Mapping):
+        for key, item in value.items():
+            yield from _rows(f"{path}.{key}", item)
+    elif _is_list(value) and any(isinstance(item, Mapping) for item in value):
+        for number, item in enumerate(value):
+            yield from _rows(f"{path}.{number}", item)
+    else:
+        yield path, _told(value)
+
+
+def _told(value: Any) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if not _is_list(value):
+        return str(value)
+    shown = ", ".join(_told(item) for item in value[:LONG])
+    return shown if len(value) <= LONG else f"{shown}, … ({len(value)} in all)"
+
+
+def _is_list(value: Any) -> bool:
+    return isinstance(value, Sequence) and not isinstance(value, (str, bytes))
+
+
+# What does the sheet say of the phases of a beat?
+
+ORDER = ("unlock", "catch-up", "impulse", "drop", "run to banking", "recoil")
+COLOURS = (0, 1, 2, 3, 4, 0)
+SIDES = ((1, "odd beats"), (0, "even beats"))
+HEAD_PHASE_TABLES = ("phase", "lasts (ms)", "balance at (°)", "balance turns (°)", "lever turns (°)", "wheel turns (°)")
+
+
+@dataclass(frozen=True)
+class _Kind:
+    """A phase over its beats, one element a beat: how long it lasts (ms), where it finds the balance and how far balance, lever
+    and wheel turn in it (degrees)."""
+
+    name: str
+    number: int
+    lasts: Array
+    at: Array
+    turns: Array
+
+    def row(self) -> list[Content]:
+        """Means and scatter."""
+        mark = element("i", "", class_=f"chip s{self.number}", aria_hidden="true")
+        wheel, lever, balance = self.turns.T
+        return [joined((mark, self.name)), _mean(self.lasts), _mean(self.at), _mean(balance), _mean(lever), _mean(wheel)]
+
+
+@dataclass
+class _Sums:
+    """A phase beat by beat, as it comes: what comes several times in a beat is added up. A long run has a great many."""
+
+    beat: int = 0
+    lasts: array[float] = field(default_factory=lambda: array("d"))
+    at: array[float] = field(default_factory=lambda: array("d"))
+    turns: array[float] = field(default_factory=lambda: array("d"))  # three a beat
+
+    def add(self, one: Phase) -> None:
+        if one.beat != self.beat:
+            self.beat = one.beat
+            self.lasts.append(0.0)
+            self.at.append(one.angles[2])
+            self.turns.extend((0.0, 0.0, 0.0))
+        self.lasts[-1] += 1e3 * (one.end - one.start)
+        for place, turn in zip((-3, -2, -1), one.turns, strict=True):
+            self.turns[place] += turn
+
+
+def phase_tables(phases: Iterable[Phase]) -> Iterator[Markup]:
+    """The section, with a strip of time and a table for either direction of the balance; nothing where no phases are known."""
+    sums: dict[int, dict[tuple[str, str], _Sums]] = {odd: {} for odd, _ in SIDES}
+    for one in phases:
+        if one.name in ORDER:
+            sums[one.beat % 2].setdefault((one.name, one.on), _Sums()).add(one)
+    parts: list[Markup] = []
+    for odd, title in SIDES:
+        kinds = _kinds(sums[odd])
+        if not kinds:
+            continue
+        lengths = [(kind.name, float(np.mean(kind.lasts)), kind.number) for kind in kinds]
+        told = f"Phases of {title}: {', '.join(f'{name} {length:.3g} ms' for name, length, _ in lengths)}"
+        count = max(len(kind.lasts) for kind in kinds)
+        anchor = all(np.array_equal(kind.turns[:, 1], kind.turns[:, 2]) for kind in kinds)  # the oscillator is its own lever
+        shown = [k for k, head in enumerate(HEAD_PHASE_TABLES) if not (anchor and head.startswith("lever"))]
+        rows = [[kind.row()[k] for k in shown] for kind in kinds]
+        heads = [HEAD_PHASE_TABLES[k] for k in shown]
+        parts += [strip(lengths, "ms", told), table(heads, rows, f"{title.capitalize()}: means of {count} beats")]
+    if parts:
+        yield section("phases", "Phases of a beat", *parts)
+
+
+def _kinds(sums: dict[tuple[str, str], _Sums]) -> list[_Kind]:
+    """In the order of a beat; an impulse apart for what it acts on."""
+    found = []
+    for (name, on), own in sorted(sums.items(), key=lambda item: ORDER.index(item[0][0])):
+        turns = np.degrees(np.array(own.turns).reshape(-1, 3))
+        title, colour = f"{name} on {on}" if on else name, COLOURS[ORDER.index(name)]
+        found.append(_Kind(title, colour, np.array(own.lasts), np.degrees(np.array(own.at)), turns))
+    return found
+
+
+def _mean(values: Array) -> str:
+    """With as many decimals as the scatter justifies, two to four."""
+    spread = float(np.std(values))
+    decimals = max(2, min(decimals_for(spread), 4)) if spread > 0.0 else 4
+    scatter = f" ± {spread:.{decimals}f}" if spread >= 0.5 * 10.0**-decimals else ""
+    return f"{signed(float(np.mean(values)), decimals)}{scatter}"
+
+
+# What does the sheet say of amplitude, rate and beat error?
+
+AVERAGED = (("amplitude_deg", "Amplitude", "°"), ("rate_s_per_d", "Rate", " s/d"), ("beat_error_ms", "Beat error", " ms"))
+
+
+def timekeeping(run: Trajectory, numbers: Mapping[str, Any]) -> Iterator[Markup]:
+    """The section; nothing where nothing swings."""
+    cards = list(_cards(numbers))
+    if not cards and not swings(run.scene):
+        return
+    note = None
+    if numbers.get("window_s"):
+        start, end = numbers["window_s"]
+        words = f"Means over {start:.4g} s to {end:.4g} s. ± is how much the beats of that time scatter and drift"
+        note = element("p", f"{words}{_computed(numbers)}.", class_="note")
+    message = numbers.get("timing_message")
+    yield section(
+        "timing",
+        "Timing",
+        element("dl", *cards, class_="cards") if cards else None,
+        element("p", message, class_="note") if message else None,
+        note,
+        *_charts(run, beats(run)),
+    )
+
+
+def _computed(numbers: Mapping[str, Any]) -> str:
+    """The error of the computation beside the scatter, where a second run gave it."""
+    told = numbers.get("error_bars")
+    if not told or not told.get("complete"):
+        return ""
+    moved = [f"{told['differences'][name]:.1g}{unit}" for name, _, unit in AVERAGED if name in told["differences"]]
+    return f"; a more exact run moved them by {', '.join(moved)}" if moved else ""
+
+
+def _cards(numbers: Mapping[str, Any]) -> Iterator[Markup]:
+    """What a watchmaker reads first."""
+    for name, label, unit in AVERAGED:
+        if numbers.get(name) is not None:
+            yield _card(label, *with_error(float(numbers[name]), numbers.get(f"{name}_error"), unit))
+    if numbers.get("vph") is not None:
+        yield _card("Frequency", f"{numbers['vph']:.2f} vph", f"{numbers['frequency_hz']:.6f} Hz")
+    heard = numbers.get("timegrapher")
+    if heard and heard.get("amplitude_deg") is not None:
+        lift = f"with a lift angle of {heard['lift_angle_deg']:.4g}°"
+        yield _card("Timegrapher shows", f"{heard['amplitude_deg']:.0f}°", lift)
+    if numbers.get("missed_beats") is not None:
+        yield _card("Missed beats", str(numbers["missed_beats"]), f"in {numbers['beats']} beats")
+    if numbers.get("efficiency") is not None:
+        yield _card("Efficiency", f"{100.0 * numbers['efficiency']:.1f} %", "of the drive's work reaches the oscillator")
+
+
+def with_error(value: float, error: float | None, unit: str) -> tuple[str, str | None]:
+    """The value with as many digits as its scatter leaves it, at least two."""
+    if error is None:
+        return f"{signed(value, 3)}{unit}", None
+    decimals = min(max(decimals_for(error), 0 if abs(value) >= 100.0 else 1), 6) if error > 0.0 else 3
+    shown = f"{error:.{decimals}f}" if error >= 0.5 * 10.0**-decimals else f"{error:.0e}"
+    return f"{signed(value, decimals)}{unit}", f"± {shown}{unit}"
+
+
+def _card(label: str, value: str, below: str | None) -> Markup:
+    small = element("span", below) if below else None
+    return element("div", element("dt", label), element("dd", element("b", value), small))
+
+
+def _charts(run: Trajectory, found: Beats) -> Iterator[Markup]:
+    """Paper tape and amplitude of all beats."""
+    if len(found) < 3:
+        return
+    tape = 1e3 * _tape(found)
+    least, most = (float(bound(tape)) for bound in (np.nanmin, np.nanmax))
+    told = f"Time gained against {1.0 / found.nominal_period:.6g} Hz, beat by beat: from {least:.3g} ms to {most:.3g} ms."
+    yield _half("Paper tape", scatter(both_ways(found, found.mark, tape), "time (s)", "gained (ms)", told))
+    unit, scale = ("°", float(np.degrees(1.0))) if found.angular else ("mm", 1e3)
+    swing = scale * found.amplitude
+    told = f"Amplitude of {len(found)} beats: {swing[0]:.4g} {unit} at first, {swing[-1]:.4g} {unit} at the end."
+    yield _half("Amplitude", scatter(both_ways(found, found.t, swing), "time (s)", f"amplitude ({unit})", told))
+
+
+def _half(title: str, chart: Markup) -> Markup:
+    return element("div", element("h3", title), chart, class_="half")
+
+
+def both_ways(found: Beats, x: Array, y: Array) -> list[Dots]:
+    """Beats in which the balance turns one way and the other, numbered as in beats.csv."""
+    odd = (found.before + 1 + np.arange(len(found))) % 2 == 1
+    return [Dots(name, x[own], y[own], look) for name, own, look in (("odd beats", odd, "d0"), ("even beats", ~odd, "d1"))]
+
+
+def _tape(found: Beats) -> Array:
+    """How many seconds each beat comes earlier than one that keeps the nominal frequency, from the first one heard."""
+    known = np.flatnonzero(np.isfinite(found.mark))
+    if len(known) == 0:
+        return np.zeros(len(found))
+    half = 0.5 * found.nominal_period
+    # Which beat of an even series it is; one that was missed leaves a gap.
+    rank = np.round((found.mark - found.mark[known[0]]) / half)
+    return np.asarray(rank * half - (found.mark - found.mark[known[0]]))
+
+
+# What does the timing sheet of a page say? The numbers of summary.json, in a watchmaker's units and order.
+
+VERDICTS = {
+    "ticks": ("good", "The watch ticks"),
+    "stops": ("bad", "The watch stops"),
+    "knocks": ("bad", "The watch knocks"),
+    "trips": ("bad", "The escapement trips"),
+    "overbanks": ("bad", "The lever overbanks"),
+    "backwards": ("bad", "The wheel runs backwards"),
+    "unsettled": ("open", "Not settled yet"),
+}
+JUDGED = {True: "✓ kept", False: "✗ missed", None: "not judged"}
+
+
+def sheet(run: Trajectory, numbers: Mapping[str, Any]) -> Markup:
+    """All sections of the sheet that this run has something to say to."""
+    sections = (
+        *timekeeping(run, numbers),
+        *phase_tables(each_phase(run)),
+        *function_tables(run.scene),
+        *_energy(run),
+        *_judgement(numbers),
+        *_parameters(run),
+        section("words", "The run in words", element("pre", headlines(run, numbers), tabindex=0)),
+    )
+    return joined(sections)
+
+
+def verdict(numbers: Mapping[str, Any]) -> Markup | None:
+    """A line in colour: what is to be thought of this watch; None where nothing keeps time."""
+    word, message = numbers.get("verdict"), numbers.get("verdict_message")
+    if word is None and numbers.get("stopped"):
+        word, message = "stops", numbers.get("stopped_message")
+    if word is None:
+        return None
+    look, told = VERDICTS.get(str(word), ("open", str(word).capitalize()))
+    more = str(message or "")
+    if more.casefold().startswith(told.casefold()):  # said once is enough
+        more = more[len(told) :]
+    elif more:
+        more = f" {more}"
+    return element("p", element("strong", told), more or None, class_=f"verdict {look}")
+
+
+def _energy(run: Trajectory) -> Iterator[Markup]:
+    """The ledger as bars."""
+    shares = energy_shares(run)
+    if not shares.went_to:
+        return
+    entries = [
+        (cause, share, f"{signed(100.0 * share, 1)} % · {metric(share * shares.supplied, 'J', 3)}")
+        for cause, share in sorted(shares.went_to.items(), key=lambda item: -item[1])
+        if abs(share) >= 5e-4
+    ]
+    power = f", {metric(shares.supplied / run.simulated, 'W', 4)} on average" if run.simulated > 0.0 else ""
+    told = "Where the energy went: " + ", ".join(f"{cause} {100.0 * share:.1f} %" for cause, share, _ in entries)
+    closes = f"The account closes to {run.energy.get('residual_relative', 0.0):.1g} of it."
+    note = f"{metric(shares.supplied, 'J', 4)} went in{power}. {closes}"
+    yield section("energy", "Energy", element("p", note, class_="note"), bars(entries, told))
+
+
+def _judgement(numbers: Mapping[str, Any]) -> Iterator[Markup]:
+    """What the scene promises, and what is to be doubted."""
+    entries = numbers.get("expect") or []
+    rows = [(element("span", JUDGED[one["ok"]], class_=f"ok-{one['ok']}"), expected_text(one)) for one in entries]
+    warnings = [element("li", f"Warning: {text}.", class_="warning") for text in numbers.get("warnings") or ()]
+    warnings += [element("li", f"Note: {text}.") for text in numbers.get("notes") or ()]
+    if rows or warnings:
+        told = table(("judged", "promise of the scene"), rows, "What the scene promises", numeric=False) if rows else None
+        yield section("judged", "Promises and notes", element("ul", *warnings) if warnings else None, told)
+
+
+def _parameters(run: Trajectory) -> Iterator[Markup]:
+    rows = parameters(run.scene)
+    if rows:
+        listed = (element("div", element("dt", _breakable(key)), element("dd", value)) for key, value in rows)
+        yield section("parameters", "Parameters", element("dl", *listed))
+
+
+def _breakable(key: str) -> Markup:
+    """A dotted key that a narrow column may break after a dot, and nowhere else."""
+    head, *tail = key.split(".")
+    return joined((head, *((Markup(".<wbr/>"), part) for part in tail)))

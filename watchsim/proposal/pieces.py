@@ -1,0 +1,468 @@
+"""About which point does a piece turn, as far as it shows by itself?"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from watchsim.drawing.circles import circle_of
+from watchsim.drawing.drawing import Drawing
+from watchsim.drawing.findings import Content, Inserted, Stroke
+from watchsim.drawing.material import MARKS, last_word
+from watchsim.drawing.read import FIT, SNAP, assembled, read_content
+from watchsim.geometry.loops import Loop, extents, winding
+from watchsim.geometry.primitives import Arc, Point
+from watchsim.geometry.solids import area, section
+from watchsim.mechanism.overlap import chord_points, material, placed
+
+# What do the drawings hold, block by block?
+#
+# What is inserted as a block gets layers of its own, named after the block: scenes choose outlines by layer.
+
+CROSSING = "crossing"  # the code of a finding
+LIKELY = (0.5e-3, 1.0)  # m across: a drawing without units within these is taken to be in millimetres, else in inches
+
+
+@dataclass(frozen=True)
+class Mark:
+    """A point, or a circle on a layer named for pivots; `layer` names it alone where `single`."""
+
+    at: Point
+    layer: str
+    single: bool
+    point: bool
+
+
+@dataclass(frozen=True)
+class Source:
+    """One drawing. `units` is a guess where the file does not say; `blocks` names inserted blocks, by prefix of the layer."""
+
+    path: Path
+    drawing: Drawing
+    units: str | None
+    blocks: dict[str, str]
+    marks: tuple[Mark, ...]
+
+    @property
+    def bad_layers(self) -> frozenset[str]:
+        """Layers with faults that a scene would refuse, and that layers of their own for single outlines do not mend."""
+        return self._with_errors() - self.crowded
+
+    @property
+    def crowded(self) -> frozenset[str]:
+        """Layers on which outlines cross and nothing else is wrong: parts drawn over each other."""
+        found = self.drawing.findings
+        others = {f.layer for f in found if f.severity == "error" and f.code != CROSSING}
+        return frozenset(layer for layer in self._with_errors() if layer not in others)
+
+    def _with_errors(self) -> frozenset[str]:
+        return frozenset(f.layer for f in self.drawing.findings if f.severity == "error" and f.layer is not None)
+
+
+def read_source(path: Path) -> Source:
+    """The drawing in a file; whatever is wrong with it is among its findings."""
+    content = read_content(path, path.suffix.lower().lstrip("."), None, FIT)
+    units = None
+    if content.strokes and content.units is None:
+        units = _likely_unit(content)
+        content = read_content(path, path.suffix.lower().lstrip("."), units, FIT)
+    blocks: dict[str, str] = {}
+    if len(content.inserted) > 1:
+        content, blocks = _by_blocks(content)
+    drawing = assembled(path, path.suffix.lower().lstrip("."), lambda: content, SNAP)
+    return Source(path, drawing, units, blocks, tuple(_marks(drawing)))
+
+
+def _likely_unit(content: Content) -> str:
+    xs = [x for stroke in content.strokes for x, _ in (stroke.edge.start, stroke.edge.end)]
+    ys = [y for stroke in content.strokes for _, y in (stroke.edge.start, stroke.edge.end)]
+    across = max(max(xs) - min(xs), max(ys) - min(ys))
+    return "mm" if LIKELY[0] <= across <= LIKELY[1] else "inch"
+
+
+def _by_blocks(content: Content) -> tuple[Content, dict[str, str]]:
+    """The strokes of each inserted block on layers of their own; prefix of these layers -> block."""
+    counts = Counter(one.block for one in content.inserted)
+    seen: Counter[str] = Counter()
+    named: list[tuple[Inserted, str]] = []
+    for one in content.inserted:
+        seen[one.block] += 1
+        plain = one.block.replace("_", "-")
+        named.append((one, plain if counts[one.block] == 1 else f"{plain}-{seen[one.block]}"))
+    strokes = tuple(_renamed(stroke, named) for stroke in content.strokes)
+    return replace(content, strokes=strokes), {prefix: one.block for one, prefix in named}
+
+
+def _renamed(stroke: Stroke, named: Sequence[tuple[Inserted, str]]) -> Stroke:
+    prefix = next((prefix for one, prefix in named if one.first <= stroke.run <= one.last), None)
+    return stroke if prefix is None else replace(stroke, layer=prefix if stroke.layer == "0" else f"{prefix}_{stroke.layer}")
+
+
+def _marks(drawing: Drawing) -> list[Mark]:
+    """Points, and circles on layers called pivots, axes or centres."""
+    found = [(layer, (x, y), True) for layer, x, y in drawing.points]
+    for loop in drawing.loops:
+        circle = circle_of(loop) if last_word(loop.layer) in MARKS else None
+        if circle is not None:
+            found.append((loop.layer, circle.centre, False))
+    on_layer = Counter(layer for layer, _, _ in found)
+    lines = {loop.layer for loop in drawing.loops}
+    return [Mark(at, layer, on_layer[layer] == 1 and (not point or layer not in lines), point) for layer, at, point in found]
+
+
+def is_mark(layer: str) -> bool:
+    """Is a layer named for what marks a place and is no material?"""
+    return last_word(layer) in MARKS
+
+
+def size_of(drawings: Sequence[Drawing]) -> float:
+    """How large everything together is, m."""
+    boxes = [box for drawing in drawings if (box := extents((*drawing.loops, *drawing.open_chains)))]
+    if not boxes:
+        return 0.0
+    low = min(box[0] for box in boxes), min(box[1] for box in boxes)
+    high = max(box[2] for box in boxes), max(box[3] for box in boxes)
+    return max(high[0] - low[0], high[1] - low[1])
+
+
+# By which part of a turn does an outline come back onto itself, and about which centre?
+#
+# The centre of area of a wheel is its centre, whatever its teeth are like.
+
+Floats = NDArray[np.float64]
+MOST = 400  # teeth
+MISS = 2e-3  # of the radius: what a drawing may fail to be alike
+ROUND = 0.02  # of the radius: what differs less from a circle is a disc
+
+
+@dataclass(frozen=True)
+class Turned:
+    """Turned by 1/fold of a turn about `centre` it lies on itself; `inner` and `outer` are its least and largest radius (m)."""
+
+    fold: int
+    centre: Point
+    inner: float
+    outer: float
+
+
+def turned(loops: Sequence[Loop], rings: Sequence[Floats]) -> Turned | None:
+    """Of closed outlines together, with their chords; None where they are a disc, or come back only after a whole turn."""
+    centre = section(loops).centroid
+    around = [points - np.array(centre) for points in rings]
+    points = np.concatenate(around)
+    radii = np.hypot(*points.T)
+    outer = float(radii.max())
+    if outer <= 0.0 or float(radii.min()) > (1.0 - ROUND) * outer:
+        return None
+    tip = points[int(radii.argmax())]
+    region = _region(around)
+    for fold in range(min(MOST, len(points)), 1, -1):
+        angle = 2.0 * math.pi / fold
+        there = placed(tip[None], (0.0, 0.0, angle))
+        if np.hypot(*(points - there).T).min() > MISS * outer:
+            continue
+        if _region([placed(ring, (0.0, 0.0, angle)) for ring in around]).hausdorff_distance(region) <= MISS * outer:
+            return Turned(fold, centre, float(radii.min()), outer)
+    return None
+
+
+def _region(rings: Sequence[Floats]) -> Any:
+    parts = material([(points, False) for points in rings])
+    whole = parts[0]
+    for part in parts[1:]:
+        whole = whole.union(part)
+    return whole
+
+
+# What does the name of a layer, a block or a file say about the part drawn there?
+#
+# In the languages of watchmaking: English, German, French.
+
+WHEEL, LEVER, OSCILLATOR, CLICK, DRIVER, FIXED = "wheel", "lever", "oscillator", "click", "driver", "fixed"
+
+# Words for a part itself; a layer name that begins with one names its part.
+PARTS = {
+    **dict.fromkeys(("wheel", "escapewheel", "rad", "gangrad", "ankerrad", "hemmungsrad", "roue", "gear", "pinion"), WHEEL),
+    **dict.fromkeys(("ratchet", "sperrrad", "sperrad", "rochet", "star", "stern", "étoile"), WHEEL),
+    **dict.fromkeys(("lever", "anker", "anchor", "ancre", "detent"), LEVER),
+    **dict.fromkeys(("click", "pawl", "jumper", "klinke", "sperrklinke", "sperrkegel", "raste", "cliquet", "sautoir"), CLICK),
+    **dict.fromkeys(("cam", "came", "nocken"), DRIVER),
+    **dict.fromkeys(("cross", "malteserkreuz", "croix"), WHEEL),
+    **dict.fromkeys(("driver", "crank", "finger", "kurbel", "mitnehmer", "manivelle", "doigt"), DRIVER),
+    **dict.fromkeys(("balance", "unruh", "balancier", "pendulum", "pendel", "pendule", "foliot"), OSCILLATOR),
+    **dict.fromkeys(("banking", "bankings", "bank", "banks", "plate", "platine", "frame", "bridge", "wall", "stop"), FIXED),
+    **dict.fromkeys(("stops", "fixed", "ground", "base", "cock", "anschlag"), FIXED),
+}
+# Words for a feature, which hint at the part that has it.
+FEATURES = {
+    **dict.fromkeys(("escape", "teeth", "tooth", "zahn", "zaehne", "zähne", "dents"), WHEEL),
+    **dict.fromkeys(("pallet", "pallets", "stone", "stones", "fork", "horn", "horns", "dart", "guard", "arm", "arms"), LEVER),
+    **dict.fromkeys(("gabel", "stein", "steine", "fourchette", "palette", "palettes", "levée", "levees"), LEVER),
+    **dict.fromkeys(("roller", "table", "safety", "impulse", "jewel", "rim", "hebelstein", "bob", "rod"), OSCILLATOR),
+}
+TEETH = frozenset(("teeth", "tooth", "zahn", "zaehne", "zähne", "dents", "wheel", "gear", "pinion", "rad", "ratchet", "star"))
+STONES = frozenset(("pallet", "pallets", "stone", "stones", "stein", "steine", "palette", "palettes", "teeth"))
+CLICKS = frozenset(("click", "pawl", "jumper", "nose", "beak", "klinke", "sperrklinke", "cliquet", "sautoir", "bec"))
+FORK = frozenset(("fork", "horn", "horns", "gabel", "fourchette"))
+PIN = frozenset(("pin", "jewel", "impulse", "hebelstein"))
+GUARD = frozenset(("dart", "guard"))
+ROLLER = frozenset(("safety", "roller"))
+FACING = ((TEETH, STONES), (TEETH, CLICKS), (FORK, PIN), (GUARD, ROLLER))
+
+
+def tokens(name: str) -> list[str]:
+    """The words of a name in lower case: "ESCAPE_WHEEL_z-1.30" has escape, wheel and z."""
+    split = re.sub(r"(?<=[a-zäöü])(?=[A-ZÄÖÜ])", " ", name)
+    return [word for word in re.split(r"[^a-zäöüéè]+", split.lower()) if word]
+
+
+def part_of(name: str) -> str | None:
+    """The kind of part that a name speaks of; None where it says nothing, or names features of two kinds."""
+    words = tokens(name)
+    named = [PARTS[word] for word in words if word in PARTS]
+    if named:
+        return named[0]
+    hinted = hints_of(name)
+    return next(iter(hinted)) if len(hinted) == 1 else None
+
+
+def hints_of(name: str) -> frozenset[str]:
+    """All kinds of part that the words of a name may belong to; empty where they say nothing."""
+    words = tokens(name)
+    named = [PARTS[word] for word in words if word in PARTS]
+    return frozenset(named[:1] or (FEATURES[word] for word in words if word in FEATURES))
+
+
+def part_word(name: str) -> str | None:
+    """What the part is called in a layer's name: "escape_wheel" of ESCAPE_WHEEL_z-1.30; None where it is not named."""
+    words = tokens(name)
+    for k, word in enumerate(words):
+        if word in PARTS:
+            return f"{words[k - 1]}_{word}" if k and FEATURES.get(words[k - 1]) == PARTS[word] else word
+    return None
+
+
+def facing_by_name(first: str, second: str) -> bool:
+    """Do the names of two surfaces say that they work together, as teeth and stones do?"""
+    a, b = set(tokens(first)), set(tokens(second))
+    return any((a & one and b & other) or (a & other and b & one) for one, other in FACING)
+
+
+# Which pieces of material does a drawing hold?
+#
+# A piece is an outer outline with its holes. Equal pieces that stand around a centre, such as single teeth, are one piece.
+
+Region = Any  # a polygon, or several, of shapely
+
+DEVIATION = 2e-5  # of an outline's length: of chords from arcs
+LEAST = 1e-7  # of the square of its length: a piece with less area has no material
+ALIKE = 1e-3  # relative: areas and lengths of equal pieces
+FEWEST = 5  # equal pieces around a centre
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """Outlines of one layer that hang together: outer ones, then their holes. `file` is the number of its drawing."""
+
+    file: int
+    layer: str
+    loops: tuple[Loop, ...]
+
+    @cached_property
+    def area(self) -> float:
+        """m²."""
+        return abs(sum(area(loop) for loop in self.loops))
+
+    @cached_property
+    def points(self) -> Floats:
+        """(n, 2) of all outer outlines, m."""
+        return np.concatenate([chord_points(loop, self._deviation) for loop in self.loops if not loop.hole])
+
+    @cached_property
+    def rings(self) -> list[tuple[Floats, bool]]:
+        return [(chord_points(loop, self._deviation), loop.hole) for loop in self.loops]
+
+    @cached_property
+    def region(self) -> Region:
+        parts = material(self.rings)
+        whole = parts[0]
+        for part in parts[1:]:
+            whole = whole.union(part)
+        return whole
+
+    @cached_property
+    def filled(self) -> Region:
+        """The region without its holes."""
+        outer = [(points, False) for points, hole in self.rings if not hole]
+        parts = material(outer)
+        whole = parts[0]
+        for part in parts[1:]:
+            whole = whole.union(part)
+        return whole
+
+    @property
+    def has_material(self) -> bool:
+        """False of an outline that crosses itself so that nothing is left: two equal halves that run either way."""
+        return min(self.area, float(self.region.area)) > LEAST * self.length**2
+
+    @cached_property
+    def centroid(self) -> Point:
+        return section(self.loops).centroid
+
+    @cached_property
+    def turned(self) -> Turned | None:
+        """By which part of a turn, about which centre, its outer outlines come back onto themselves; None of a disc."""
+        outer = [loop for loop in self.loops if not loop.hole]
+        return turned(outer, [chord_points(loop, self._deviation) for loop in outer])
+
+    @cached_property
+    def arcs(self) -> list[Arc]:
+        return [edge for loop in self.loops for edge in loop.edges if isinstance(edge, Arc)]
+
+    @cached_property
+    def is_disc(self) -> bool:
+        outer = [loop for loop in self.loops if not loop.hole]
+        return len(outer) == 1 and circle_of(outer[0]) is not None
+
+    @cached_property
+    def length(self) -> float:
+        return sum(loop.length for loop in self.loops)
+
+    @property
+    def _deviation(self) -> float:
+        first = self.loops[0]
+        return DEVIATION * max(first.length, 1e-6)
+
+
+def pieces_of(file: int, loops: Sequence[Loop], crowded: frozenset[str] = frozenset()) -> list[Piece]:
+    """The pieces of closed outlines; layer by layer, in the order of the drawing.
+
+    On `crowded` layers outlines cross: what is taken for a hole there, but leaves the outline around it, is a part of its own.
+    """
+    found: list[Piece] = []
+    for layer in dict.fromkeys(loop.layer for loop in loops):
+        own = [loop for loop in loops if loop.layer == layer and loop.closed]
+        single = [Piece(file, layer, tuple(group)) for group in _with_holes(own, layer in crowded)]
+        found += _around_a_centre([piece for piece in single if piece.has_material])
+    return found
+
+
+def _with_holes(loops: Sequence[Loop], crowded: bool) -> Iterator[list[Loop]]:
+    outers = [loop for loop in loops if not loop.hole]
+    groups: list[list[Loop]] = [[loop] for loop in outers]
+    sizes = [abs(area(loop)) for loop in outers]
+    for hole in (loop for loop in loops if loop.hole):
+        place = hole.edges[0].point(0.5)
+        around = [k for k, loop in enumerate(outers) if sizes[k] > abs(area(hole)) and winding(loop, place) != 0]
+        within = min(around, key=lambda k: sizes[k], default=None)
+        if within is None or (crowded and not _is_hole(hole, outers[within], loops)):
+            groups.append([replace(hole.reversed(), hole=False)])
+        else:
+            groups[within].append(hole)
+    yield from groups
+
+
+def _is_hole(hole: Loop, outer: Loop, loops: Sequence[Loop]) -> bool:
+    """Does it lie in the outline around it, and cross nothing else on its layer?"""
+    inside, around = _filled(hole), _filled(outer)
+    others = (_filled(loop) for loop in loops if loop is not hole and loop is not outer)
+    return bool(around.covers(inside)) and not any(inside.boundary.crosses(other.boundary) for other in others)
+
+
+def _filled(loop: Loop) -> Region:
+    return material([(chord_points(loop, DEVIATION * loop.length), False)])[0]
+
+
+def _around_a_centre(pieces: Sequence[Piece]) -> list[Piece]:
+    """The same, with equal pieces that stand around a centre put together."""
+    classes: list[list[Piece]] = []
+    for piece in pieces:
+        for group in classes:
+            if _alike(piece, group[0]):
+                group.append(piece)
+                break
+        else:
+            classes.append([piece])
+    found: list[Piece] = []
+    for group in classes:
+        loops = tuple(loop for piece in group for loop in piece.loops)
+        whole = Piece(group[0].file, group[0].layer, loops)
+        symmetry = whole.turned if len(group) >= FEWEST else None
+        found += [whole] if symmetry is not None and symmetry.fold % len(group) == 0 else group
+    return found
+
+
+def _alike(one: Piece, other: Piece) -> bool:
+    return math.isclose(one.area, other.area, rel_tol=ALIKE) and math.isclose(one.length, other.length, rel_tol=ALIKE)
+
+
+# About which point does a piece turn, as far as it shows by itself?
+
+SAME = 2e-6  # m: two centres this close are one, as in drawings with three decimals of a millimetre
+SHARE = 0.1  # of a piece's outline must lie on arcs about a mark for these to name its centre
+MANY, DEEP = 8, 0.65  # a wheel: so many teeth, or slots so deep (least by largest radius) that it is no nut and no square stone
+
+# How much a centre is worth
+SURE, LIKELY_CENTRES, WEAK = 3, 2, 1
+
+
+@dataclass(frozen=True)
+class Centre:
+    """A pivot: where, the mark that shows it, and why it is taken for one."""
+
+    at: Point
+    worth: int
+    why: str
+    mark: Mark | None = None
+
+    def is_that_of(self, other: Centre) -> bool:
+        return math.dist(self.at, other.at) <= SAME
+
+
+def centre_of(piece: Piece, marks: Sequence[Mark]) -> Centre | None:
+    """The centre that a piece shows: a mark with arcs about it, its own symmetry, the one mark in it, or its hole."""
+    shares = [(sum(arc.length for arc in piece.arcs if math.dist((arc.x, arc.y), mark.at) <= SAME), mark) for mark in marks]
+    best = max(shares, key=lambda pair: pair[0], default=(0.0, None))
+    symmetry = piece.turned
+    if best[1] is not None and best[0] >= SHARE * piece.length:
+        return Centre(
+            best[1].at, SURE, f"the drawing marks a point there, on layer {best[1].layer}, with arcs about it", best[1]
+        )
+    if symmetry is not None and is_toothed(symmetry):
+        mark = next((one for one in marks if math.dist(one.at, symmetry.centre) <= SAME), None)
+        at = symmetry.centre if mark is None else mark.at
+        return Centre(at, SURE, f"the outline comes back onto itself {symmetry.fold} times in a turn about it", mark)
+    inside = [mark for mark in marks if holds(piece, mark.at)]
+    if len(inside) == 1:
+        return Centre(
+            inside[0].at, LIKELY_CENTRES, f"the one point of layer {inside[0].layer} that lies in its outline", inside[0]
+        )
+    return None if marks else hole_of(piece)
+
+
+def is_toothed(symmetry: Turned) -> bool:
+    """Is it a wheel, with teeth or slots?"""
+    return symmetry.fold >= MANY or (symmetry.fold >= 3 and symmetry.inner < DEEP * symmetry.outer)
+
+
+def hole_of(piece: Piece) -> Centre | None:
+    """The centre of the circular hole nearest to the centre of area."""
+    circles = [circle for loop in piece.loops if loop.hole and (circle := circle_of(loop)) is not None]
+    if not circles:
+        return None
+    nearest = min(circles, key=lambda circle: math.dist(circle.centre, piece.centroid))
+    return Centre(nearest.centre, LIKELY_CENTRES, f"the centre of its hole of radius {1e3 * nearest.radius:.4g} mm")
+
+
+def holds(piece: Piece, place: Point) -> bool:
+    """Does an outer outline of the piece run round the place?"""
+    return any(not loop.hole and winding(loop, place) != 0 for loop in piece.loops)

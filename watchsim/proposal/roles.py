@@ -1,0 +1,227 @@
+"""Which part is driven, which drives, which swings, which holds, and which stands between them?"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from watchsim.proposal.parts import Part, is_one_sided, teeth_of
+from watchsim.proposal.pieces import CLICK, DRIVER, FIXED, LEVER, OSCILLATOR, WHEEL, is_toothed, part_of, part_word
+
+# How do outlines of several bodies on one layer get layers of their own?
+#
+# A scene chooses by layer what can touch. Where a layer holds parts of several bodies, each outline gets one.
+
+APART = "#"  # between the name of a layer and the number of an outline on it
+
+
+def apart(parts: Sequence[Part], crowded: Sequence[frozenset[str]]) -> None:
+    """Rename the layers of the pieces on layers that several parts share, or on which outlines cross; the largest is the first.
+
+    `crowded` are the layers of each drawing on which they cross.
+    """
+    owners = Counter((part.file, layer) for part in parts for layer in part.layers)
+    for part in parts:
+        part.pieces.sort(key=lambda piece: -piece.area)
+        numbers: Counter[str] = Counter()
+        for k, piece in enumerate(part.pieces):
+            if owners[piece.file, piece.layer] > 1 or piece.layer in crowded[piece.file]:
+                numbers[piece.layer] += 1
+                part.pieces[k] = replace(piece, layer=f"{piece.layer}{APART}{numbers[piece.layer]}")
+
+
+def plain(layer: str) -> tuple[str, str]:
+    """The layer as it was, and the number of the outline on it; empty where the layer was left as it is."""
+    name, _, number = layer.partition(APART)
+    return (name, number) if number.isdigit() else (layer, "")
+
+
+# Which way do the teeth of a wheel lean?
+#
+# Their tips stand ahead of their roots in the direction in which an escape wheel is made to turn: its teeth lock with the tip.
+
+TIP, ROOT = 0.9, 0.25  # of a tooth's height: where its middle is taken
+SYMMETRIC = 0.03  # of a pitch: teeth that lean less do not lean
+
+
+def lean_of(part: Part) -> int:
+    """+1 where the tips stand ahead counter-clockwise of the roots, -1 clockwise; 0 where the teeth are symmetric."""
+    toothed = [piece for piece in part.pieces if piece.turned is not None and is_toothed(piece.turned)]
+    if not toothed:
+        return 0
+    piece = max(toothed, key=lambda one: one.turned.outer if one.turned else 0.0)
+    symmetry = piece.turned
+    assert symmetry is not None
+    height = symmetry.outer - symmetry.inner
+    middles = [_middle(piece.rings, symmetry.centre, symmetry.inner + share * height, symmetry.fold) for share in (TIP, ROOT)]
+    if None in middles:
+        return 0
+    tip, root = (middle for middle in middles if middle is not None)
+    pitch = 2.0 * math.pi / symmetry.fold
+    way = (tip - root + 0.5 * pitch) % pitch - 0.5 * pitch
+    return 0 if abs(way) < SYMMETRIC * pitch else 1 if way > 0.0 else -1
+
+
+def _middle(
+    rings: list[tuple[NDArray[np.float64], bool]], centre: tuple[float, float], radius: float, fold: int
+) -> float | None:
+    """The angle, modulo a pitch, of the middle of the material on a circle: the circular mean of what lies in it."""
+    angles = np.linspace(0.0, 2.0 * math.pi, 64 * fold, endpoint=False)
+    points = np.column_stack((centre[0] + radius * np.cos(angles), centre[1] + radius * np.sin(angles)))
+    inside = np.zeros(len(points), bool)
+    for ring, _ in rings:
+        inside ^= _inside(ring, points)
+    if not inside.any() or inside.all():
+        return None
+    mean = np.exp(1j * fold * angles[inside]).mean()
+    return float(np.angle(mean)) / fold if abs(mean) > 1e-6 else None
+
+
+def _inside(ring: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Even-odd rule, all points at once."""
+    x, y = points[:, 0], points[:, 1]
+    inside = np.zeros(len(points), bool)
+    for (x0, y0), (x1, y1) in zip(ring[:-1].tolist(), ring[1:].tolist(), strict=True):
+        if y0 != y1:
+            inside ^= ((y0 > y) != (y1 > y)) & (x < x0 + (y - y0) * (x1 - x0) / (y1 - y0))
+    return inside
+
+
+# Which part is driven, which drives, which swings, which holds, and which stands between them?
+
+FEWEST_TEETH = 8  # of an escape wheel; with fewer slots a wheel is driven step by step, as in a Geneva drive
+ROUNDISH = 0.4  # of its outlines on arcs about its pivot: a part that may turn through whole turns
+NAMES = {WHEEL: "wheel", LEVER: "lever", OSCILLATOR: "balance", CLICK: "click", DRIVER: "driver", FIXED: "banking"}
+
+
+@dataclass(eq=False)
+class Role:
+    """A part with its name and task: wheel, lever, oscillator, click, driver or fixed. `teeth` is 0 where it is no wheel."""
+
+    part: Part
+    name: str
+    task: str
+    why: str
+    teeth: int = 0
+
+    @property
+    def moves(self) -> bool:
+        return self.part.centre is not None and self.task != FIXED
+
+
+def roles_of(parts: Sequence[Part]) -> list[Role]:
+    """The role of every part, wheels first, then lever, oscillator, click, others, and what stands still."""
+    moving = [part for part in parts if part.centre is not None and part.kind != FIXED]
+    found = [Role(part, "", FIXED, _still(part)) for part in parts if part not in moving]
+    wheels = [part for part in moving if part.kind in (WHEEL, None) and teeth_of(part) > 0]
+    rest = [part for part in moving if part not in wheels]
+    for part in wheels:
+        count = teeth_of(part)
+        found.append(Role(part, "", WHEEL, f"it comes back onto itself {count} times in a turn", count))
+    for part in list(rest):
+        if part.kind == WHEEL:
+            found.append(Role(part, "", WHEEL, "the names of its layers say so"))
+            rest.remove(part)
+    for part in list(rest):
+        why = _click(part, rest, wheels)
+        if why is not None:
+            found.append(Role(part, "", CLICK, why))
+            rest.remove(part)
+    swinging = _oscillator(rest, wheels)
+    driven = _driven(rest) if swinging is None and not wheels and not found else None
+    for part in rest:
+        if swinging is not None and part is swinging[0]:
+            found.append(Role(part, "", OSCILLATOR, swinging[1]))
+        elif driven is not None and part is driven[0]:
+            found.append(Role(part, "", *driven[1:]))
+        else:
+            named = part.kind == LEVER
+            task = LEVER if named or swinging is not None else DRIVER
+            found.append(Role(part, "", task, "the names of its layers say so" if named else "it turns and is no wheel"))
+    order = [DRIVER, WHEEL, LEVER, OSCILLATOR, CLICK, FIXED]
+    found.sort(key=lambda role: order.index(role.task))
+    _name(found)
+    return found
+
+
+def _still(part: Part) -> str:
+    return "the names of its layers say so" if part.kind == FIXED else "nothing in the drawing shows a pivot of it"
+
+
+def _click(part: Part, rest: Sequence[Part], wheels: Sequence[Part]) -> str | None:
+    """Why this part is a click; None where it is none."""
+    if part.kind == CLICK:
+        return "the names of its layers say so"
+    alone = len(rest) == 1 and len(wheels) == 1 and not any(part_word(layer) for layer in part.layers)
+    if alone and is_one_sided(part, wheels[0]):
+        return "it comes into the teeth when it is turned one way, and clear of them the other way, unlike an anchor"
+    return None
+
+
+def _oscillator(rest: Sequence[Part], wheels: Sequence[Part]) -> tuple[Part, str] | None:
+    """What swings: what is called so; else the roundest; a single part beside an escape wheel swings itself."""
+    named = [part for part in rest if part.kind == OSCILLATOR]
+    if named:
+        return named[0], "the names of its layers say so"
+    if not wheels or max(teeth_of(part) for part in wheels) < FEWEST_TEETH:
+        return None
+    free = [part for part in rest if part.kind is None] or (list(rest) if len(rest) == 1 else [])
+    if len(rest) == 1 and free:
+        return free[0], "it is the only part beside the wheel: an anchor that swings itself"
+    if not free:
+        return None
+    roundest = max(free, key=_roundness)
+    if _roundness(roundest) >= ROUNDISH:
+        return roundest, "most of its outline lies on arcs about its pivot"
+    wheel = wheels[0]
+    assert wheel.centre is not None
+    at = wheel.centre.at
+    farthest = max(free, key=lambda part: math.dist(part.centre.at, at) if part.centre else 0.0)
+    return farthest, "it is the farthest from the wheel"
+
+
+def _driven(rest: Sequence[Part]) -> tuple[Part, str, str] | None:
+    """Of two parts of which one drives, by its name or by a pin away from its pivot: the other, its task, and why."""
+    if len(rest) != 2:
+        return None
+    for one, other in (rest, rest[::-1]):
+        if one.kind == DRIVER and other.kind is None:
+            return other, LEVER, "the names of the other's layers say that it drives"
+        if _has_pin(one) and not _has_pin(other) and other.kind in (None, WHEEL):
+            return other, WHEEL, "the other has a pin beside its pivot, which drives it"
+    return None
+
+
+def _has_pin(part: Part) -> bool:
+    discs = [piece for piece in part.pieces if piece.is_disc]
+    return any(part.centre is not None and math.dist(disc.centroid, part.centre.at) > 1e-2 * disc.length for disc in discs)
+
+
+def _roundness(part: Part) -> float:
+    if part.centre is None:
+        return 0.0
+    at = part.centre.at
+    about = sum(arc.length for piece in part.pieces for arc in piece.arcs if math.dist((arc.x, arc.y), at) <= 1e-2 * arc.radius)
+    return about / sum(piece.length for piece in part.pieces)
+
+
+def _name(roles: Sequence[Role]) -> None:
+    taken: set[str] = set()
+    for role in roles:
+        named = [(part_word(layer), part_of(layer)) for layer in role.part.layers]
+        words = [word for word, kind in named if word is not None and role.task in (kind, DRIVER) and kind != FIXED]
+        words = words or [word for word, _ in named if word is not None and role.task == FIXED]
+        plain = words[0] if words else NAMES[role.task]
+        if role.task == OSCILLATOR and not words and not any(other.task == LEVER for other in roles):
+            plain = "anchor"
+        name, k = plain, 1
+        while name in taken:
+            k += 1
+            name = f"{plain}_{k}"
+        taken.add(name)
+        role.name = name

@@ -1,0 +1,144 @@
+"""Which points does a dense curve need, so that it looks as if all were drawn?
+
+In every column of dots the first, the last, the least and the largest value: a line through them covers the very same dots
+(Jugel et al., M4: a visualization-oriented time series data aggregation, VLDB 2014), and no spike is lost, be it one sample
+long.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from watchsim.simulation.trajectory import Trajectory
+from watchsim.storage.columns import blocks, let_go
+
+# Which points does a curve of millions need, so that it looks as if all were drawn?
+#
+# Of each stretch of time, finer than the dots of the picture, the first and last point and every column's least and largest:
+# what
+# lies between them is drawn over.
+
+STRETCHES = 8000  # of the picture's width, some thousand dots
+AT_ONCE = 2000  # rows that are looked up together
+POINTS = 1_000_000  # a record with more rows in the window than that is thinned
+
+Array = NDArray[np.float64]
+
+
+def thinned(run: Trajectory, window: tuple[float, float]) -> NDArray[np.intp]:
+    """The rows to draw of those inside the window, in order; all of them where they are not so many."""
+    start, stop = window
+    first, last = int(np.searchsorted(run.t, start, side="right")), int(np.searchsorted(run.t, stop, side="left"))
+    if last - first <= POINTS:
+        return np.arange(first, last)
+    found, offset = [], first
+    for t, *motion in blocks(*(array[first:last] for array in (run.t, run.q, run.u, run.a))):
+        stretch = np.minimum(((t - start) * (STRETCHES / (stop - start))).astype(np.int64), STRETCHES - 1)
+        begins = np.flatnonzero(np.diff(stretch, prepend=-1))
+        rows = [begins, np.append(begins[1:], len(t)) - 1]
+        lengths = np.diff(np.append(begins, len(t)))
+        for column in np.hstack(motion).T:
+            for extreme in (np.minimum, np.maximum):
+                met = np.flatnonzero(column == np.repeat(extreme.reduceat(column, begins), lengths))
+                rows.append(met[np.flatnonzero(np.diff(stretch[met], prepend=-1))])
+        found.append(offset + np.unique(np.concatenate(rows)))
+        offset += len(t)
+    return np.concatenate(found)
+
+
+def taken(array: NDArray[np.float64], rows: NDArray[np.intp]) -> Array:
+    """These rows of an array that may lie in a file."""
+    parts = []
+    for (part,) in blocks(rows, length=AT_ONCE):
+        first, last = part[0], part[-1]
+        parts.append(array[first : last + 1] if last - first == len(part) - 1 else array[part])  # they rise
+        let_go(array)
+    return np.concatenate(parts) if parts else array[:0]
+
+
+# Which rows may be left out, so that what is interpolated between the others stays where it was?
+
+
+def kept_rows(count: int, fits: Callable[[int, int], bool], ends: Iterable[int] = ()) -> NDArray[np.int64]:
+    """Rows of 0 … count - 1 to keep, in order: the first, the last, those in `ends`, and as many between as it takes.
+
+    `fits(i, j)` says whether all rows between i and j are represented well enough by these two.
+    """
+    forced = sorted({0, count - 1, *ends}) if count else []
+    kept = set(forced)
+    open_parts = [(i, j) for i, j in pairwise(forced) if j > i + 1]
+    while open_parts:
+        i, j = open_parts.pop()
+        if fits(i, j):
+            continue
+        middle = (i + j) // 2
+        kept.add(middle)
+        open_parts += [(low, high) for low, high in ((i, middle), (middle, j)) if high > low + 1]
+    return np.array(sorted(kept), np.int64)
+
+
+# Which points does a dense curve need, so that it looks as if all were drawn?
+
+COLUMNS = 4000  # of a panel: more than 600 dots per inch over 170 mm
+
+
+def reduced(x: Array, y: Array, columns: int = COLUMNS) -> tuple[Array, Array]:
+    """The points of a curve over rising `x` that a picture so many columns wide needs, in order; gaps (nan) stay gaps."""
+    if len(x) <= 4 * columns or not x[-1] > x[0]:
+        return x, y
+    place = _columns(x, columns)
+    begins = np.flatnonzero(np.diff(place, prepend=-1))
+    ends = np.append(begins[1:], len(x)) - 1
+    lengths = ends - begins + 1
+    gaps = np.isnan(y)
+    kept = [begins, ends]
+    for extreme, missing in ((np.minimum, np.inf), (np.maximum, -np.inf)):
+        found = extreme.reduceat(np.where(gaps, missing, y), begins)
+        met = np.flatnonzero(y == np.repeat(found, lengths))
+        kept.append(met[np.flatnonzero(np.diff(place[met], prepend=-1))])
+    # A gap stays one: its first row, and the row before it.
+    opened = np.flatnonzero(gaps & ~np.concatenate(([False], gaps[:-1])))
+    closed = np.flatnonzero(gaps & ~np.concatenate((gaps[1:], [False])))
+    kept += [opened, np.maximum(opened - 1, 0), np.minimum(closed + 1, len(x) - 1)]
+    rows = np.unique(np.concatenate(kept))
+    return x[rows], y[rows]
+
+
+def bands(x: Array, y: Array, columns: int = COLUMNS) -> list[tuple[Array, Array, Array]]:
+    """The area that a dense curve over rising `x` covers: x, least and largest value of each column, stretch by stretch.
+
+    Filling it takes a hundredth of the time that thousands of strokes beside each other take. Empty where the points are so few
+    that a curve is to be drawn. Gaps part the stretches, but for those within a column.
+    """
+    if len(x) <= 4 * columns or not x[-1] > x[0]:
+        return []
+    begins = np.flatnonzero(np.diff(_columns(x, columns), prepend=-1))
+    middle = 0.5 * (x[begins] + x[np.append(begins[1:], len(x)) - 1])
+    middle[0], middle[-1] = x[0], x[-1]
+    low, high = np.fmin.reduceat(y, begins), np.fmax.reduceat(y, begins)
+    known = np.isfinite(low)
+    edges = np.flatnonzero(np.diff(known.astype(np.int8), prepend=0, append=0))
+    return [(middle[i:j], low[i:j], high[i:j]) for i, j in edges.reshape(-1, 2).tolist()]
+
+
+def _columns(x: Array, columns: int) -> NDArray[np.int64]:
+    """In which column each point stands."""
+    return np.minimum(((x - x[0]) * (columns / (x[-1] - x[0]))).astype(np.int64), columns - 1)
+
+
+def distinct(x: Array, y: Array, cells: int = COLUMNS) -> tuple[Array, Array]:
+    """The points of a curve that need not be a function: those that stand in another dot than the one before or after them."""
+    if len(x) <= cells:
+        return x, y
+    marks = []
+    for values in (x, y):
+        low, high = np.nanmin(values), np.nanmax(values)
+        scaled = (values - low) * (cells / (high - low)) if high > low else np.zeros(len(values))
+        marks.append(np.where(np.isnan(scaled), -1.0, np.floor(scaled)))
+    moved = (np.diff(marks[0]) != 0.0) | (np.diff(marks[1]) != 0.0)
+    kept = np.concatenate(([True], moved)) | np.concatenate((moved, [True]))
+    return x[kept], y[kept]

@@ -1,0 +1,277 @@
+"""How does what a picture shows besides the mechanism share the room with it, and how is it drawn?"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
+from matplotlib.transforms import IdentityTransform
+from numpy.typing import NDArray
+
+from watchsim.analysis.phases import Phase
+from watchsim.render.insets import Inset, InsetPicture, Strip, beside, insets
+from watchsim.render.marks import Clock, arrow_path, changing_speed_text, turn_text
+from watchsim.render.palette import LIGHT, Style
+from watchsim.render.parts import Edges, LastingPatch, loops_of
+from watchsim.render.patches import Mechanism
+from watchsim.render.view import Frame, View, Window, view
+from watchsim.render.words import Words, draw_key, draw_notes, draw_rules, draw_scale, lay_out, relative_size
+from watchsim.simulation.trajectory import Trajectory
+from watchsim.units import metric
+
+# What does a picture show besides the mechanism, if asked?
+
+
+@dataclass(frozen=True)
+class Extras:
+    """insets  places to enlarge (see `insets`)
+    strip   the body whose angle and velocity run below the mechanism; None: no strip
+    phases  of the beats, in order: named, and shaded in the strip
+    force   N: the force that the longest arrow stands for; 0: no arrows
+    scale   N: a round force, for the key of the arrows
+    """
+
+    insets: tuple[str, ...] = ()
+    strip: str | None = None
+    phases: tuple[Phase, ...] = ()
+    force: float = 0.0
+    scale: float = 0.0
+
+    def phase_at(self, t: float) -> str:
+        """The name of the phase at `t` (s); empty where none is known."""
+        k = bisect_right(self.phases, t, key=lambda phase: phase.start) - 1
+        return self.phases[k].name if k >= 0 and t < self.phases[k].end else ""
+
+
+NOTHING = Extras()
+STRIP_WIDE, STRIP_TALL = 0.27, 0.2  # share of a wide and of a tall picture's height that the strip takes
+ARROW = 0.15  # of the smaller side of the room: the longest arrow
+
+
+# How does what a picture shows besides the mechanism share the room with it, and how is it drawn?
+
+LEAST = 60.0  # pixels of height that must be left for the mechanism
+PAD = 24.0  # pixels at 1280 × 720
+
+
+@dataclass(frozen=True)
+class Shared:
+    """Who has which room (pixels): the mechanism, the strip below it, the insets."""
+
+    room: Frame
+    strip: Frame | None
+    insets: tuple[Frame, ...]
+
+
+def shared_room(frame: Frame, extras: Extras, height: float) -> Shared:
+    """How the frame between the bands of words of a picture of that height is shared out."""
+    room, below = frame, None
+    if extras.strip is not None:
+        taken = (STRIP_WIDE if frame.width >= frame.height else STRIP_TALL) * height
+        below = Frame(frame.left, frame.bottom, frame.width, taken)
+        room = Frame(frame.left, frame.bottom + taken, frame.width, frame.height - taken)
+        if room.height < LEAST:
+            raise ValueError("no room is left for the mechanism above its strip; choose a larger picture, or no strip")
+    room, boxes = beside(room, len(extras.insets))
+    return Shared(room, below, boxes)
+
+
+class Beside:
+    """Insets, strip, arrows and phase names of a figure.
+
+    `frame` is the room between the bands of words, `size` that of text, `unit` that of everything drawn.
+    """
+
+    def __init__(
+        self,
+        figure: Figure,
+        run: Trajectory,
+        window: Window,
+        extras: Extras,
+        frame: Frame,
+        size: float,
+        unit: float,
+        style: Style,
+    ) -> None:
+        self._style = style
+        self._figure, self._run, self._window, self._extras, self._unit = figure, run, window, extras, unit
+        self._words, self._faint = Words(size, style.ink, style.background), Words(size, style.faint, style.background)
+        self._bold = Words(size, style.ink, style.background, "bold")
+        self._frame, self._strip, self._turn = frame, None, 0.0
+        shared = shared_room(frame, extras, figure.bbox.height)
+        if shared.strip is not None and extras.strip is not None:
+            self._strip = Strip(run, window, shared.strip, extras.strip, extras.phases, size, style)
+        self.room, self._boxes = shared.room, shared.insets
+        self._longest = ARROW * min(self.room.width, self.room.height)
+        self._insets: list[InsetPicture] = []
+        self._made: list[Inset] = []
+
+    def look_at(self, view: View) -> None:
+        """Prepare the insets, which stand the same way up as the picture's own view."""
+        self._turn = view.turn
+        self._made = insets(self._run, self._window, self._extras.insets, self._boxes, view.turn)
+        self._insets = [
+            InsetPicture(self._figure, self._run.scene, one, self._unit, self._words, self._style) for one in self._made
+        ]
+
+    def arrows(self, matrix: Array, points: Array, forces: Array) -> list[LastingPatch]:
+        """Arrows for forces (n, 2), N, at points (n, 2), m, in a picture with this map."""
+        if not len(points) or self._extras.force <= 0.0:
+            return []
+        turn = matrix[:2, :2] / np.hypot(*matrix[:2, 0])
+        ways = forces @ turn.T * (self._longest / self._extras.force)
+        path = arrow_path(points @ matrix[:2, :2].T + matrix[:2, 2], ways, self._longest)
+        return [] if path is None else [self._arrow(path)]
+
+    def draw(
+        self,
+        renderer: Any,
+        t: float,
+        frames: dict[str, Array],
+        matrix: Array,
+        marks: Callable[[Array], list[LastingPatch]],
+        out_pixels: Pixels,
+    ) -> None:
+        """Draw everything for the poses of the instant `t`, in a picture whose map from metres is `matrix`."""
+        for picture, one in zip(self._insets, self._made, strict=True):
+            picture.place_in(matrix, one.centre(frames), self.room).draw(renderer)
+        for picture in self._insets:
+            picture.draw(renderer, frames, marks, out_pixels)
+        self._key(renderer, out_pixels)
+        if self._extras.phases:
+            self._name_phase(self._extras.phase_at(t), out_pixels)
+        if self._strip is not None:
+            self._strip.draw(t, out_pixels)
+
+    def _name_phase(self, name: str, out_pixels: Pixels) -> None:
+        """The name, after a chip of the colour that shades the phase in the strip."""
+        size, left = self._bold.size, round(PAD * self._unit)
+        base = round(self._frame.bottom + self._frame.height + 0.3 * size)
+        if name in self._style.phases:
+            foot = out_pixels.shape[0] - base
+            chip = slice(foot - round(0.75 * size), foot + 1), slice(left, left + round(0.8 * size))
+            out_pixels[chip][..., :3] = np.round(255.0 * np.array(to_rgb(self._style.phases[name])))
+            left += round(1.3 * size)
+        self._bold.write(name, left, base, out_pixels)
+
+    def tell_speed(self, speed: float, frame: Frame, out_pixels: Pixels) -> None:
+        """Write the speed of this frame where a steady one would stand."""
+        turned = turn_text(self._turn)
+        text = changing_speed_text(speed) + (f", {turned}" if turned else "")
+        right, base = frame.left + frame.width - PAD * self._unit, frame.bottom + frame.height + 0.3 * self._faint.size
+        self._faint.write(text, right, base, out_pixels, right=True)
+
+    def _key(self, renderer: Any, out_pixels: Pixels) -> None:
+        """An arrow of a round force with its size, at the lower left of the mechanism."""
+        if self._extras.scale <= 0.0:
+            return
+        size, left, base = self._words.size, PAD * self._unit, self.room.bottom + 0.9 * self._words.size
+        length = self._extras.scale / self._extras.force * self._longest
+        path = arrow_path(np.array([[left, base + 0.35 * size]]), np.array([[length, 0.0]]), self._longest)
+        if path is not None:
+            self._arrow(path).draw(renderer)
+        self._words.write(metric(self._extras.scale, "N", 1), left + length + 0.6 * size, base, out_pixels)
+
+    def _arrow(self, path: Any) -> LastingPatch:
+        look = {"facecolor": self._style.force, "edgecolor": self._style.background, "linewidth": max(0.9 * self._unit, 0.6)}
+        patch = LastingPatch(path, transform=IdentityTransform(), **look)
+        patch.set_figure(self._figure)
+        return patch
+
+
+# What does one frame show?
+#
+# The background (fixed bodies, title, scale, names) is drawn once; then one patch per part is moved by its transform and
+# the changing numbers are copied in. Frames do not depend on one another.
+
+Array = NDArray[np.float64]
+Pixels = NDArray[np.uint8]
+
+DPI = 72.0  # one point is one pixel
+
+
+class Stage:
+    """Draws a run at any instant of a window, always in the same frame.
+
+    `size` is (width, height) in pixels; `speed` and `step` (s between frames) are only told, not used. `picked` edges are
+    drawn over everything, with a key below the title. With `extras` the mechanism leaves room for them.
+    `clock` reports something other than the time of the run, `style` is light or dark.
+    """
+
+    def __init__(  # noqa: PLR0913 - options, by name
+        self,
+        run: Trajectory,
+        size: tuple[int, int],
+        window: Window,
+        *,
+        zoom: Sequence[str] | None = None,
+        turn: float | None = None,
+        speed: float | None = None,
+        step: float | None = None,
+        picked: Sequence[Edges] = (),
+        extras: Extras = NOTHING,
+        clock: Clock | None = None,
+        style: Style = LIGHT,
+    ) -> None:
+        self._style = style
+        self._figure = Figure(figsize=((size[0] + 0.5) / DPI, (size[1] + 0.5) / DPI), dpi=DPI, facecolor=style.background)
+        self._canvas = FigureCanvasAgg(self._figure)
+        self._unit = relative_size(*size)
+        self._layout = lay_out(self._figure, run, window, step or (window[1] - window[0]) / 2000.0, style)
+        if clock is not None:
+            self._layout = replace(self._layout, clock=clock)
+        size_of_text = self._layout.small.size
+        self._beside = Beside(self._figure, run, window, extras, self._layout.frame, size_of_text, self._unit, style)
+        room = self._beside.room
+        self.view = view(run, window, room, zoom, turn)
+        self._beside.look_at(self.view)
+        draw_scale(self._figure, self.view.scale, style)
+        draw_notes(self._figure, self._layout.frame, speed, self.view.turn, style)
+        endless = any(not loop.closed for body in run.scene.bodies for loop in loops_of(body))
+        if zoom is not None or endless or self.view.follow is not None:
+            draw_rules(self._figure, room, style)
+        self._mechanism = Mechanism(self._figure, run.scene, self.view, room, self._unit, style, picked)
+        draw_key(self._figure, [(edges.colour, edges.meaning) for edges in picked], style)
+        self._canvas.draw()
+        self._background = self._canvas.copy_from_bbox(self._figure.bbox)
+
+    def draw(
+        self,
+        t: float,
+        frames: dict[str, Array],
+        contacts: Array | None = None,
+        mark: str | None = None,
+        press: tuple[Array, Array] | None = None,
+        speed: float | None = None,
+    ) -> Pixels:
+        """The picture (height, width, 4) of the instant `t`; the next call overwrites it.
+
+        `frames` gives every body's pose x, y, angle; `contacts` (n, 2) points to mark, in metres, in the colour `mark`
+        (default: that of contacts); `press` points (n, 2), m, and the forces there (n, 2), N; `speed` is told where it
+        changes from frame to frame.
+        """
+        self._canvas.restore_region(self._background)
+        renderer = self._canvas.get_renderer()
+        matrix = self.view.matrix(self.view.centre_at(frames))
+        self._mechanism.draw(renderer, frames, matrix)
+
+        def touching(matrix: Array) -> list[LastingPatch]:
+            made: list[LastingPatch] = []
+            if contacts is not None and len(contacts) > 0:
+                made = self._mechanism.rings(contacts @ matrix[:2, :2].T + matrix[:2, 2], mark or self._style.contact)
+            return made if press is None else made + self._beside.arrows(matrix, *press)
+
+        for patch in touching(matrix):
+            self._mechanism.own(patch).draw(renderer)
+        pixels = np.asarray(self._canvas.buffer_rgba())
+        self._beside.draw(renderer, t, frames, matrix, touching, pixels)
+        if speed is not None:
+            self._beside.tell_speed(speed, self._layout.frame, pixels)
+        self._layout.write(t, frames, pixels)
+        return pixels

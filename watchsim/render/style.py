@@ -1,0 +1,327 @@
+"""Which phases of which beats pass while a window is shown, where it shows so few that they can be seen?"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import groupby
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from watchsim.analysis.phases import Phase, phases
+from watchsim.analysis.timeline import BEGINNING, RESTING
+from watchsim.analysis.timing import beats, beats_within
+from watchsim.render.palette import FAINT, GRID, INK
+from watchsim.render.view import Window, recorded, stretch
+from watchsim.scene.roles import frequency, keeps_time, with_anchor
+from watchsim.simulation.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
+    from matplotlib.text import Text
+
+
+# What do all plots have in common: width in print, sizes of letters, colours, axes?
+#
+# A figure is as wide as it will be printed, so that a letter of 6 pt here is one of 6 pt there. Pages under docs/ use the same.
+
+MM = 1.0 / 25.4  # inches
+POINT = 1.0 / 72.0 / MM  # mm
+FULL, COLUMN = 170.0, 85.0  # mm, of a page and of one of its two columns
+NARROW = 120.0  # mm: a narrower figure is laid out for a column
+DPI = 200
+TITLE, LABEL, TICK, SMALL = 9.0, 7.0, 6.5, 6.0  # pt; journals ask for 6 at least
+EDGE = 2.0  # mm, that nothing comes closer to the figure's edge
+HEADING = 11.0  # mm, the title and a line below it
+CURVE, THIN, HAIR = 0.9, 0.6, 0.5  # pt, of curves, aids and frames
+LEAD = 1.3  # height of a line of text over its size
+MOST_LETTERS = 500  # of a title
+LETTER = 0.60  # mean width of a letter over its size, on the safe side
+
+# Okabe and Ito's colours for every kind of colour vision (jfly.uni-koeln.de/color, 2008), the yellow left out, and ink.
+SERIES = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", INK)
+MARKERS = ("o", "s", "^", "D", "v", "X", "P")
+GOOD, BAD = SERIES[0], SERIES[1]
+MAP = "cividis"  # even in lightness, for every kind of colour vision
+
+
+def figure(width: float = FULL, height: float = COLUMN, layout: Literal["constrained"] | None = None) -> Figure:
+    """An empty figure of this size in mm that can be saved, and that a notebook shows."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    made = ShownFigure(figsize=(width * MM, height * MM), dpi=DPI, facecolor="white", layout=layout)
+    FigureCanvasAgg(made)
+    return made
+
+
+def panel(figure: Figure, left: float, top: float, width: float, height: float) -> Axes:
+    """Axes at a place in mm from the figure's upper left corner."""
+    wide, high = (inches / MM for inches in figure.get_size_inches())
+    return figure.add_axes((left / wide, 1.0 - (top + height) / high, width / wide, height / high))
+
+
+def heading(figure: Figure, title: str, words: str = "") -> None:
+    """A title and a line below it, at the upper left; what does not fit is cut."""
+    wide, high = (inches / MM for inches in figure.get_size_inches())
+    look: dict[str, Any] = {"ha": "left", "va": "center", "color": INK}
+    made = [figure.suptitle(cut(title), x=EDGE / wide, y=1.0 - 4.0 / high, fontsize=TITLE, weight="bold", **look)]
+    if words:
+        made.append(figure.text(EDGE / wide, 1.0 - 8.5 / high, cut(words), fontsize=LABEL, **look))
+    for text in made:
+        fit(text, wide - 2.0 * EDGE)
+
+
+def without_help() -> None:
+    """Have matplotlib make no help texts about properties when it is loaded: a third of its loading."""
+    from matplotlib.artist import Artist
+
+    if hasattr(Artist, "_update_set_signature_and_docstring"):
+        Artist._update_set_signature_and_docstring = classmethod(lambda _: None)
+
+
+def cut(words: str) -> str:
+    """The beginning of a text that no figure is wide enough for: to measure letters takes time."""
+    return words if len(words) <= MOST_LETTERS else f"{words[:MOST_LETTERS].rstrip()}…"
+
+
+def fit(text: Text, room: float) -> None:
+    """Cut a text, measured as it is drawn, to `room` mm."""
+    figure = text.get_figure()
+    assert figure is not None
+    whole = text.get_text()
+    for _ in range(4):
+        width = text.get_window_extent().width / figure.dpi / MM
+        if width <= room:
+            return
+        most = min(int(len(text.get_text()) * room / width), len(text.get_text()) - 2)
+        text.set_text(f"{whole[: max(most, 1)].rstrip()}…")
+
+
+def dress(axes: Axes, grid: Literal["both", "x", "y", "none"] = "both") -> None:
+    """Grid, frame and numbers of a panel; `grid`: both, x, y or none."""
+    if grid != "none":
+        axes.grid(True, axis=grid, color=GRID, linewidth=HAIR)
+    axes.set_axisbelow(True)
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.spines[["left", "bottom"]].set_color(FAINT)
+    axes.spines[["left", "bottom"]].set_linewidth(HAIR)
+    axes.tick_params(which="both", colors=INK, labelsize=TICK, length=2.0, width=HAIR, pad=1.5)
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.label.set_fontsize(LABEL)
+        axis.label.set_color(INK)
+        axis.get_offset_text().set_fontsize(SMALL)
+
+
+def title(axes: Axes, words: str, colour: str = INK) -> None:
+    """What a panel shows, at its upper left."""
+    axes.set_title(cut(words), loc="left", fontsize=LABEL, weight="bold", color=colour, y=1.0, pad=3.0)  # y: not searched for
+
+
+def limits(axes: Axes, low: float, high: float, share: float = 0.08, flat: float = 1e-6, unit: float = 1e-300) -> None:
+    """Room above and below the values; what differs by rounding only is not blown up."""
+    axes.set_ylim(*with_room(low, high, share, flat, unit))
+
+
+def with_room(low: float, high: float, share: float, flat: float, unit: float) -> tuple[float, float]:
+    """From where to where an axis goes that shows values from `low` to `high`.
+
+    It leaves `share` of their range on both sides, and is no shorter than the part `flat` of the largest, or of `unit`.
+    """
+    room = max(share * (high - low), 0.5 * flat * max(abs(low), abs(high), unit))
+    return low - room, high + room
+
+
+def key(axes: Axes, entries: Sequence[tuple[Any, str]], **where: Any) -> None:
+    """A legend in the one style."""
+    handles, names = [one for one, _ in entries], [name for _, name in entries]
+    look: dict[str, Any] = {"frameon": False, "fontsize": SMALL, "labelcolor": INK, "handlelength": 1.4, "columnspacing": 1.0}
+    axes.legend(handles, names, **{**look, "borderaxespad": 0.2, "handletextpad": 0.4, **where})
+
+
+def save(figure: Figure, path: Path | str) -> None:
+    """Write it in the format of the file's ending: letters as letters in PDF, as outlines in SVG, and the same every time.
+
+    It is made in memory: matplotlib ends a PDF that cannot be written with an AttributeError instead of the disk's own words.
+    """
+    import matplotlib
+
+    with matplotlib.rc_context({"pdf.fonttype": 42, "svg.hashsalt": "watchsim", "svg.fonttype": "path"}):
+        ending = Path(path).suffix[1:].lower()
+        stamp = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}.get(ending)
+        packed: dict[str, Any] = {"pil_kwargs": {"compress_level": 3}} if ending == "png" else {}
+        made = io.BytesIO()
+        figure.savefig(made, format=ending, metadata=stamp, **packed)
+    Path(path).write_bytes(made.getvalue())
+
+
+# In which unit are energies of that size told: those of a watch in nJ, those of a clock in µJ or mJ?
+
+UNITS = ((1e9, "nJ"), (1e6, "µJ"), (1e3, "mJ"), (1.0, "J"))
+MOST = 1e4  # in that unit
+
+
+def energy_unit(largest: float) -> tuple[float, str]:
+    """How many to the joule, and the unit's name, such that `largest` (J) has at most four digits before its point."""
+    return next((one for one in UNITS if abs(largest) * one[0] < MOST), UNITS[-1])
+
+
+# How does a figure show itself in a notebook, without a magic word?
+
+SCREEN = 134  # dots per inch: a page's width is 900 dots, in which letters of 6 pt can be read
+COLOURS = 32  # of a small picture: a palette makes it small
+
+
+class ShownFigure(Figure):
+    """A figure that notebooks show as a picture, whether or not they have been told about matplotlib."""
+
+    def _repr_png_(self) -> bytes:
+        out = io.BytesIO()
+        FigureCanvasAgg(self)
+        self.savefig(out, format="png", dpi=SCREEN)
+        return out.getvalue()
+
+
+def small_png(figure: Figure, dots: int) -> bytes:
+    """A figure so many dots wide, in few colours."""
+    from PIL import Image
+
+    out, small = io.BytesIO(), io.BytesIO()
+    figure.savefig(out, format="png", dpi=dots / figure.get_figwidth())
+    Image.open(out).convert("RGB").quantize(COLOURS).save(small, "PNG", optimize=True)
+    return small.getvalue()
+
+
+# How much room do the words around the panels of a plot need?
+#
+# Worked out from the number of characters. matplotlib's own layouts draw everything twice more to measure it, which takes
+# longer than the plot.
+
+INCH = 72.0  # pt
+DIGIT = 0.637  # width of a digit over its size, in matplotlib's own font
+LINE = 1.25  # height of a line of text over its size
+BEFORE_LABEL = 4.0  # pt, the tick and the gap to its label
+GAP = 4.0  # pt, between words and from the edge of the figure
+TITLE_PAD = 3.0  # pt, between a panel and its title
+
+
+def place_panels(figure: Figure, panels: NDArray[np.object_], above: float) -> None:
+    """Set the sides of a grid of panels whose limits are final, so that nothing overlaps and nothing is cut off.
+
+    `panels`: (rows, columns) axes with y labels and left titles, x labels in the last row only; `above` mm on top are left for
+    the heading of the figure.
+    """
+    width, height = (inches * INCH for inches in figure.get_size_inches())
+    rows, columns = panels.shape
+    label = LINE * LABEL
+    labels = [max(_label_width(axes.yaxis) for axes in panels[:, j]) for j in range(columns)]
+    left = [BEFORE_LABEL + labels[j] + label + 2.0 * GAP for j in range(columns)]
+    right = 0.5 * _label_width(panels[-1, 0].xaxis) + 0.5 * GAP  # the last label may stand below the corner
+    bottom = BEFORE_LABEL + LINE * TICK + label + GAP
+    titles = TITLE_PAD + label
+    top = above / POINT
+    panel_width = (width - sum(left) - columns * right) / columns
+    step = (height - top - bottom) / rows
+    panel_height = step - titles - GAP
+    for j in range(columns):
+        x = sum(left[: j + 1]) + j * (panel_width + right)
+        for i in range(rows):
+            y = bottom + (rows - 1 - i) * step
+            axes = panels[i, j]
+            axes.set_position((x / width, y / height, panel_width / width, panel_height / height))
+            axes.yaxis.set_label_coords(-(left[j] - GAP - 0.5 * label) / panel_width, 0.5)
+            axes.yaxis.label.set_verticalalignment("center")
+            axes.xaxis.set_label_coords(0.5, -(bottom - GAP - 0.5 * label) / panel_height)
+            axes.xaxis.label.set_verticalalignment("center")
+
+
+def spare_labels(axis: Axis, length: float, steps: Sequence[float], most: int = 5) -> None:
+    """Numbers at multiples of `steps`, at most so many, and so few that they stand apart on an x axis of that length (pt)."""
+    from matplotlib.ticker import MaxNLocator
+
+    for bins in range(most, 0, -1):
+        axis.set_major_locator(MaxNLocator(nbins=bins, steps=steps))
+        ticks = _ticks(axis)
+        apart = length * (ticks[1] - ticks[0]) / float(np.ptp(axis.get_view_interval())) if len(ticks) > 1 else length
+        if _label_width(axis) + GAP <= apart:
+            return
+
+
+def _label_width(axis: Axis) -> float:
+    """Of its widest tick label (pt)."""
+    texts = axis.get_major_formatter().format_ticks(_ticks(axis))
+    return max((DIGIT * TICK * sum(0.5 if c in ",." else 1.0 for c in text) for text in texts), default=0.0)
+
+
+def _ticks(axis: Axis) -> list[float]:
+    """Those in sight."""
+    low, high = sorted(axis.get_view_interval())
+    return [tick for tick in axis.get_major_locator().tick_values(low, high) if low <= tick <= high]
+
+
+# Which phases of which beats pass while a window is shown, where it shows so few that they can be seen?
+
+MOST_PASSING_PHASES = 12  # beats; of more the phases would be hairlines
+
+
+def passing(run: Trajectory, window: Window) -> list[list[Phase]]:
+    """The phases of each beat that is in sight, cut to the window; none where there is no escapement, or too much is shown."""
+    found = with_anchor(run.scene)
+    if found.wheel is None or found.lever is None or not keeps_time(run.scene):
+        return []
+    near = beats_within(beats(run), window)
+    if not 0 < len(near) <= MOST_PASSING_PHASES + 2:
+        return []
+    start, end = window
+    cut = (
+        replace(one, start=max(one.start, start), end=min(one.end, end))
+        for one in phases(run, near)
+        if one.end > start and one.start < end
+    )
+    return [list(own) for _, own in groupby(cut, key=lambda one: one.beat)]
+
+
+# Which stretch of a run does a plot show that needs no more than one cycle?
+
+SEARCHED = 3.1  # oscillations from the end: two whole beats lie in them
+LONGER = 1.02  # so that the curve closes
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A stretch of time (s), and the phases of the beats of an escapement in it, a list for each beat."""
+
+    window: Window
+    phases: list[list[Phase]]
+
+
+def one_cycle(run: Trajectory) -> Shown:
+    """The last two beats of an escapement that are whole; else the last oscillation, or all of the last stretch recorded.
+
+    ValueError where nothing was recorded.
+    """
+    start, end = recorded(run)[-1]
+    if not end > start:
+        raise ValueError(f"nothing to draw: the run holds only the instant {start:.9g} s")
+    hertz = frequency(run.scene) if keeps_time(run.scene) else None
+    if not hertz:
+        return Shown((start, end), [])
+    told = passing(run, (max(start, end - SEARCHED / hertz), end))
+    whole = [beat for beat in told if beat[0].name in BEGINNING and beat[-1].name in RESTING][-2:]
+    if len(whole) == 2:
+        return Shown((whole[0][0].start, whole[1][-1].end), whole)
+    return Shown((max(start, end - LONGER / hertz), end), told)
+
+
+def shown(run: Trajectory, window: Sequence[float] | None) -> Shown:
+    """The window as asked (s), or one cycle; ValueError where it was not recorded."""
+    if window is None:
+        return one_cycle(run)
+    span = stretch(run, window)
+    return Shown(span, passing(run, span))

@@ -1,0 +1,121 @@
+"""Which forces act on a body besides contacts?
+
+All act on the body's own coordinate: a pivoted body's angle (N·m, rad) or a sliding body's travel (N, m). With `against` they
+act between two bodies, on the one and back on the other; angles, travels and speeds are then those of `body` less the other's.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from watchsim.geometry.hairspring import Coil
+from watchsim.geometry.primitives import Point
+
+
+@dataclass(frozen=True, slots=True)
+class Spring:
+    """A spring: -stiffness (q - rest), N·m/rad or N/m.
+
+    `frequency` (Hz) where that is how it was given; `coil` is how it is drawn. At `stop` (rad or m) the body comes to a stop on
+    its way to `rest`, with impacts of Poisson's `restitution`.
+    """
+
+    body: str
+    stiffness: float
+    rest: float = 0.0
+    frequency: float | None = None
+    coil: Coil | None = None
+    against: str | None = None
+    stop: float | None = None
+    restitution: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class LineSpring:
+    """A spring and damper between a point of one body and a point of another, or of the movement (None).
+
+    points     in the bodies' frames, m
+    stiffness  N/m; `length` (m) is that without force, `viscous` (N·s/m) acts on its rate
+    """
+
+    between: tuple[str, str | None]
+    points: tuple[Point, Point]
+    stiffness: float
+    length: float
+    viscous: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Mainspring:
+    """A mainspring that drives a body through a train.
+
+    ratio       turns of the body for one turn of the barrel, negative where the body turns clockwise
+    efficiency  of the train: share of the barrel's work that reaches the body
+    run_down    rad, of the barrel since it was wound, at the start
+    torque      N·m at the barrel, at the start
+    inertia     kg·m², of the train's wheels and the barrel as felt at the body; part of the body's own
+    """
+
+    ratio: float
+    efficiency: float
+    run_down: float
+    torque: float
+    inertia: float
+
+
+@dataclass(frozen=True, slots=True)
+class Torque:
+    """A constant torque (N·m) or force (N) on a body; with `table`, value by linear interpolation over angle or time.
+
+    `over` is "constant", "angle" or "time"; `table` holds (abscissa, value) pairs in SI, ascending. Where a `mainspring` drives
+    the body through a train, `table` says what that comes to over the body's own angle, and `value` what it is at the start.
+    A table over time with a `period` (s) repeats: its last row is the first, a period later.
+    """
+
+    body: str
+    value: float = 0.0
+    over: str = "constant"
+    table: tuple[tuple[float, float], ...] = ()
+    mainspring: Mainspring | None = None
+    against: str | None = None
+    period: float | None = None
+
+    def over_time(self, t: float) -> float:
+        """Value of a table over time at `t` (s)."""
+        times, values = zip(*self.table, strict=True)
+        since = t if self.period is None else times[0] + (t - times[0]) % self.period
+        return float(np.interp(since, times, values))
+
+
+@dataclass(frozen=True, slots=True)
+class Damping:
+    """Damping: -viscous u - quadratic u|u| - coulomb sgn(u), in SI units."""
+
+    body: str
+    viscous: float = 0.0
+    quadratic: float = 0.0
+    coulomb: float = 0.0
+    against: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Side:
+    """One side of a contact: a body, or one layer of it."""
+
+    body: str
+    layer: str | None = None
+
+    def __str__(self) -> str:
+        return self.body if self.layer is None else f"{self.body}.{self.layer}"
+
+
+@dataclass(frozen=True, slots=True)
+class Contact:
+    """Only what is declared here can touch. Coulomb friction, Poisson restitution normal and tangential."""
+
+    sides: tuple[Side, Side]
+    friction: float = 0.0
+    restitution: float = 0.0
+    tangential_restitution: float = 0.0

@@ -1,0 +1,387 @@
+"""How are springs, torques and damping of the scene file read?"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from watchsim import units
+from watchsim.geometry.hairspring import Coil
+from watchsim.geometry.primitives import Point
+from watchsim.scene.errors import Faults
+from watchsim.scene.forces import Damping, LineSpring, Spring, Torque
+from watchsim.scene.keys import COIL, DAMPING, LEAF, LINE_SPRING, SPRING, TORQUE, Keys, nearest
+from watchsim.scene.read_contacts import read_against, repeated, rows_of
+from watchsim.scene.read_trains import BARREL, KEYS, mainspring_torque
+from watchsim.scene.roles import Oscillator, loads, oscillator
+from watchsim.scene.scene import Body
+from watchsim.scene.solids import HAIRSPRING
+from watchsim.scene.values import NAN, UNREADABLE, Table, listed
+from watchsim.units import LENGTH
+
+# How is a spring drawn, which acts as a torque and has no shape of its own?
+
+WIDTH = 3e-5  # m, where the scene does not say
+FEWEST, MOST = 1.0, 100.0  # turns that a picture can show
+EXAMPLE_READ_COIL = 'draw = { inner = "0.5 mm", outer = "2.8 mm", turns = 13, stud = "90°" }'
+
+
+def read_coil(table: Table, body: Body | None) -> Coil | None:
+    """As `draw` of a spring says; else as the `solids` of its body weigh a hairspring given by numbers; else not at all."""
+    if "draw" not in table:
+        return _weighed(body)
+    if body is not None and body.motion != "pivot":
+        table.fault("draw", f'a hairspring is wound about a pivot, and motion of {body.name} is "{body.motion}"')
+        return None
+    if not isinstance(table.mapping["draw"], dict):
+        table.fault("draw", f"a table is needed here, such as {EXAMPLE_READ_COIL}", with_value=True)
+        return None
+    keys = Table(table.mapping["draw"], f"{table.path}.draw", COIL, table.faults)
+    known = len(table.faults.found)
+    keys.lacks(("inner", "outer", "turns"), EXAMPLE_READ_COIL)
+    inner = keys.positive("inner", "it is the radius of the collet") if "inner" in keys else math.nan
+    outer = keys.positive("outer", "it is the stud's distance from the pivot") if "outer" in keys else math.nan
+    turns = keys.quantity("turns", math.nan)
+    width = keys.positive("width", "it is seen from above") if "width" in keys else WIDTH
+    if not math.isnan(turns) and not FEWEST <= turns <= MOST:
+        keys.fault("turns", f"draw {FEWEST:g} to {MOST:g} turns", with_value=True)
+    if outer <= inner:
+        keys.fault("outer", "the stud must stand outside the collet: outer is no more than inner", with_value=True)
+    stud = keys.quantity("stud")
+    return Coil(inner, outer, turns, stud, width) if len(table.faults.found) == known else None
+
+
+def _weighed(body: Body | None) -> Coil | None:
+    spirals = () if body is None or body.motion != "pivot" else [one for one in body.solids if one.kind == HAIRSPRING]
+    for solid in spirals:
+        if solid.spiral is not None and FEWEST <= solid.spiral.turns <= MOST:
+            return Coil(solid.spiral.inner, solid.spiral.outer, solid.spiral.turns, 0.0, solid.width)
+    return None
+
+
+# How are leaf springs read: their stiffness from their size, their preload and the stop on which they rest?
+#
+# A leaf clamped at one end and pressed at the other is a cantilever: F = 3 E I y / L³ with I = w t³ / 12, for deflections small
+# against its length (Timoshenko, *Strength of Materials*, part I, 1930, art. 37 to 39: deflection of a cantilever).
+# On a pivoted body it presses at the end of an arm, which makes it a torsional spring of arm² times that.
+
+EXAMPLE_READ_LEAF = 'leaf = { modulus = "200 GPa", length = "5 mm", width = "0.5 mm", thickness = "0.08 mm" }'
+SIZES = {
+    "modulus": "it is the modulus of elasticity",
+    "length": "it is measured from the clamp to where the leaf presses",
+    "width": "it is the height of the strip, across the plane",
+    "thickness": "it is the one in the plane, in which the leaf bends",
+}
+
+
+def leaf_stiffness(table: Table, motion: str) -> float:
+    """3 E I / L³ of the leaf of a spring, N/m; times arm², N·m/rad, on a body with motion "pivot". NaN after a fault."""
+    if not isinstance(table.mapping["leaf"], dict):
+        table.fault("leaf", f"a table is needed here, such as {EXAMPLE_READ_LEAF}", with_value=True)
+        return NAN
+    keys = Table(table.mapping["leaf"], f"{table.path}.leaf", LEAF, table.faults)
+    turns = motion == "pivot" or (not motion and "arm" in keys)
+    needed = {**SIZES, **({"arm": "it is the distance of the leaf's force from the pivot"} if turns else {})}
+    keys.lacks(needed, EXAMPLE_READ_LEAF + (' with arm = "2 mm", on a pivoted body' if turns else ""))
+    if "arm" in keys and not turns:
+        keys.fault("arm", "belongs to a leaf on a pivoted body: leave it out")
+    sizes = {key: keys.positive(key, why) if key in keys else NAN for key, why in needed.items()}
+    if sizes["thickness"] >= sizes["length"]:
+        keys.fault("thickness", "a leaf is thin: the formula of a cantilever needs thickness far below length", with_value=True)
+    bending = sizes["modulus"] * sizes["width"] * sizes["thickness"] ** 3 / 12.0
+    return 3.0 * bending / sizes["length"] ** 3 * sizes.get("arm", 1.0) ** 2
+
+
+def read_rest(table: Table, body: Body | None, stiffness: float, other: Body | None) -> float:
+    """The place without force; with `preload` that from which the spring presses so much at its stop, or else at the start."""
+    if "preload" not in table:
+        return table.quantity("rest")
+    if "rest" in table:
+        table.fault("preload", "rest and preload say the same thing: leave one out")
+    start = start_of(body) - start_of(other)
+    return table.quantity("stop", start) + table.quantity("preload") / stiffness
+
+
+def read_stop(table: Table, body: Body | None, other: Body | None, rest: float) -> tuple[float | None, float]:
+    """Where a spring rests on its stop (None without one), and the restitution of impacts there."""
+    restitution = table.quantity("restitution")
+    if not 0.0 <= restitution <= 1.0 and not math.isnan(restitution):
+        table.fault("restitution", "of impacts on the stop, lies between 0 and 1", with_value=True)
+    if "stop" not in table:
+        if "restitution" in table:
+            table.fault("restitution", 'belongs to a spring with a stop, such as stop = "0°": leave it out')
+        return None, 0.0
+    stop = table.quantity("stop")
+    carried = next((one for one in (body, other) if one is not None and one.on is not None), None)
+    if carried is not None and other is not None:
+        why = f"{carried.name} is carried by {carried.on}, and a stop between three angles is no contact of two bodies"
+        table.fault("stop", f"{why}: draw the stop, and declare the contact with it")
+    if other is not None and other.prescribed is not None:
+        table.fault("stop", f"{other.name} is driven: draw the stop, and declare the contact with it")
+    if rest == stop:
+        table.fault("stop", "the spring does not press on it: say by preload or rest to which side it presses", with_value=True)
+    elif body is not None and (start_of(body) - start_of(other) - stop) * (stop - rest) < 0.0:
+        table.fault("stop", "the body stands beyond it at the start: choose another angle, or the other sign of preload", True)
+    return stop, restitution
+
+
+def start_of(body: Body | None) -> float:
+    """The coordinate of a body at the start, 0 for the movement: angles count from the drawing's, travels from the start."""
+    return body.angle if body is not None and body.motion == "pivot" else 0.0
+
+
+# How are [[line_springs]] read, which act along the line between two points?
+
+EXAMPLE = 'points = [["1 mm", "0 mm"], ["5 mm", "2 mm"]]'
+
+
+def read_line_springs(mapping: Mapping[str, Any], bodies: tuple[Body, ...], faults: Faults) -> tuple[LineSpring, ...]:
+    """Each between a point of a body and a point of another, or of the movement."""
+    known = {body.name: body for body in bodies}
+    tables = [
+        Table(one, f"line_springs.{i}", LINE_SPRING, faults) for i, one in enumerate(listed(mapping, "line_springs", faults))
+    ]
+    found = [_line_spring(table, known) for table in tables]
+    return tuple(one for one in found if one is not None)
+
+
+def _line_spring(table: Table, known: Mapping[str, Body]) -> LineSpring | None:
+    ends = _ends(table, known)
+    points = _points(table)
+    stiffness, viscous = _stiffness(table), table.quantity("viscous")
+    if viscous < 0.0:
+        table.fault("viscous", "negative damping would drive the bodies", with_value=True)
+    if "length" in table and "tension" in table:
+        table.fault("tension", "length and tension say the same thing: leave one out")
+    if ends is None:
+        return None
+    start = math.dist(*(at_start(body, point) for body, point in zip(ends, points, strict=True)))
+    length = table.quantity("length") if "length" in table else start - table.quantity("tension") / stiffness
+    if length < 0.0:
+        why = "without force it would be shorter than nothing" if "tension" in table else "a length is not negative"
+        table.fault("tension" if "tension" in table else "length", why, with_value=True)
+    if start == 0.0:
+        table.fault("points", "lie on each other at the start: the spring would have no direction")
+    first, second = ends
+    assert first is not None
+    return LineSpring((first.name, second.name if second else None), points, stiffness, length, viscous)
+
+
+def _stiffness(table: Table) -> float:
+    if "leaf" in table:
+        if "stiffness" in table:
+            table.fault("leaf", "stiffness and leaf say the same thing: leave one out")
+        return leaf_stiffness(table, "slide")
+    if "stiffness" not in table and table.is_table:
+        table.fault("", 'missing: stiffness = "20 N/m", or leaf = { … }')
+    return table.positive("stiffness", "a spring pulls back")
+
+
+def at_start(body: Body | None, point: Point) -> Point:
+    """Where a point of a body, or of the movement, lies when a run begins."""
+    if body is None:
+        return point
+    c, s = math.cos(body.angle), math.sin(body.angle)
+    (x0, y0), (x, y) = body.position, point
+    return x0 + c * x - s * y, y0 + s * x + c * y
+
+
+def _ends(table: Table, known: Mapping[str, Body]) -> tuple[Body | None, Body | None] | None:
+    """The two bodies, the second None for the movement; None altogether after a fault."""
+    example = 'between = ["lever", "wheel"], or ["lever"] for a spring from the movement'
+    names = table.names("between", (1, 2), f"one or two bodies are needed: {example}")
+    if not names:
+        return None
+    for i, name in enumerate(names):
+        if name not in known:
+            table.fault(f"between.{i}", f'there is no body "{name}". {nearest(name, known)}')
+            return None
+        if known[name].on is not None:
+            table.fault(f"between.{i}", f"{name} is carried by {known[name].on}: line springs hold bodies of the movement only")
+            return None
+    first, second = known[names[0]], known[names[1]] if len(names) == 2 else None
+    if all(body is None or body.motion == "fixed" or body.prescribed is not None for body in (first, second)):
+        table.fault("between", "nothing that it holds can give way, so this spring does nothing", with_value=True)
+    return first, second
+
+
+def _points(table: Table) -> tuple[Point, Point]:
+    value = table.mapping.get("points")
+    if not isinstance(value, (list, tuple)) or len(value) != 2:
+        if table.is_table:
+            table.fault("points" if "points" in table else "", f"a point of each is needed, from its pivot: {EXAMPLE}")
+        return UNREADABLE, (NAN, NAN)
+    first, second = (table.point(f"points.{i}", one, LENGTH) for i, one in enumerate(value))
+    return first, second
+
+
+# How are springs, torques and damping of the scene file read?
+
+OVER = {"pivot": ("angle", "time", BARREL), "slide": ("travel", "time")}
+ABSCISSA = {"angle": units.ANGLE, "travel": units.LENGTH, "time": units.TIME, BARREL: units.ANGLE}
+COORDINATE = {"pivot": "inertia", "slide": "mass"}
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """One element of [[springs]], [[torques]] or [[damping]] with the body it names (None after a fault)."""
+
+    table: Table
+    body: Body | None
+    other: Body | None  # at the other end
+    mass: float  # of the body's coordinate, with what it carries and what is geared to it, kg or kg·m²; NaN after a fault
+
+    @property
+    def name(self) -> str:
+        return self.body.name if self.body else ""
+
+    @property
+    def against(self) -> str | None:
+        return self.other.name if self.other else None
+
+
+def read_springs(mapping: Mapping[str, Any], bodies: tuple[Body, ...], faults: Faults) -> tuple[Spring, ...]:
+    entries = _entries(mapping, "springs", SPRING, bodies, faults)
+    return tuple(_spring(entry) for entry in entries)
+
+
+def read_torques(mapping: Mapping[str, Any], bodies: tuple[Body, ...], faults: Faults) -> tuple[Torque, ...]:
+    return tuple(_torque(entry) for entry in _entries(mapping, "torques", TORQUE, bodies, faults))
+
+
+def read_damping(
+    mapping: Mapping[str, Any], bodies: tuple[Body, ...], springs: tuple[Spring, ...], gravity: Point, faults: Faults
+) -> tuple[Damping, ...]:
+    found = []
+    lost = any(not spring.body for spring in springs) or (
+        not springs and mapping.get("springs", []) != []
+    )  # noted: whose is it?
+    for entry in _entries(mapping, "damping", DAMPING, bodies, faults):
+        swinging = oscillator(bodies, springs, gravity, entry.name) if "q_factor" in entry.table else None
+        found.append(_damping(entry, swinging, lost))
+    return tuple(found)
+
+
+def _entries(mapping: Mapping[str, Any], section: str, keys: Keys, bodies: tuple[Body, ...], faults: Faults) -> Iterator[Entry]:
+    known = {body.name: body for body in bodies}
+    elements = listed(mapping, section, faults)
+    masses = _masses(bodies) if elements else {}
+    for i, element in enumerate(elements):
+        table = Table(element, f"{section}.{i}", keys, faults)
+        name = table.mapping.get("body")
+        body = known.get(name) if isinstance(name, str) else None
+        table.motion = body.motion if body else ""
+        _note_body(table, known)
+        other = known.get(read_against(table, body, known) or "")
+        yield Entry(table, body, other, masses.get(body.name, NAN) if body else NAN)
+
+
+def _masses(bodies: tuple[Body, ...]) -> dict[str, float]:
+    """What the coordinate of each body weighs: turning its inertia, sliding its mass, with all that is geared to it."""
+    return {body.name: mass for body, mass in zip(bodies, loads(bodies)[2], strict=True)}
+
+
+def _note_body(table: Table, known: Mapping[str, Body]) -> None:
+    if not table.is_table:
+        return
+    name = table.needed_text("body", next(iter(known), "balance"))
+    if name not in known and (name or table.mapping.get("body") == ""):
+        table.fault("body", f"there is no such body. {nearest(name, known)}", with_value=True)
+    elif name in known and known[name].motion not in COORDINATE:
+        table.fault("body", f'acts on a pivoted or a sliding body, and motion of {name} is "{known[name].motion}"', True)
+    elif name in known and known[name].prescribed is not None:
+        table.fault("body", f"{name} is driven: it moves as prescribed, whatever acts on it", True)
+    elif name in known and (geared := known[name].geared) and known[geared.to].prescribed is not None:
+        table.fault(
+            "body", f"{name} moves as prescribed, whatever acts on it: {geared.to}, to which it is geared, is driven", True
+        )
+
+
+def _spring(entry: Entry) -> Spring:
+    stiffness = _stiffness_read_forces(entry)
+    frequency = math.sqrt(stiffness / entry.mass) / math.tau if "frequency" in entry.table and stiffness > 0.0 else None
+    coil = read_coil(entry.table, entry.body)
+    rest = read_rest(entry.table, entry.body, stiffness, entry.other)
+    stop = read_stop(entry.table, entry.body, entry.other, rest)
+    return Spring(entry.name, stiffness, rest, frequency, coil, entry.against, *stop)
+
+
+def _stiffness_read_forces(entry: Entry) -> float:
+    """Of a spring given by its stiffness, by the frequency at which it makes its body swing, or by the size of a leaf."""
+    table = entry.table
+    given = [key for key in ("stiffness", "frequency", "leaf") if key in table]
+    if len(given) > 1:
+        table.fault(given[1], f"{' and '.join(given)} say the same thing: leave one out")
+        return NAN
+    if "leaf" in table:
+        return leaf_stiffness(table, table.motion)
+    if "frequency" in table:
+        frequency = table.positive("frequency", "it is the frequency of the free oscillation")
+        return entry.mass * (math.tau * frequency) ** 2
+    if "stiffness" not in table and table.is_table:
+        table.fault("", 'a spring needs frequency = "28800 vph" or stiffness = "0.758 µN·m/rad"; a leaf spring, leaf = { … }')
+    return table.positive("stiffness", "a spring pulls back")
+
+
+def _torque(entry: Entry) -> Torque:
+    table = entry.table
+    if "table" in table:
+        return _tabulated(entry)
+    of_table = [key for key in ("over", "period", *KEYS) if key in table]
+    if "value" not in table and table.is_table:
+        needed = 'missing: value = "-1.0 µN·m", or a table over angle or time'
+        table.fault("", f"missing: the table to which {of_table[0]} belongs" if of_table else needed)
+        return Torque(entry.name, against=entry.against)
+    for key in of_table:
+        owner = f' with over = "{BARREL}"' if key in KEYS else "; a value is constant"
+        table.fault(key, f"belongs to a table{owner}")
+    return Torque(entry.name, table.quantity("value"), against=entry.against)
+
+
+def _tabulated(entry: Entry) -> Torque:
+    table, nothing = entry.table, Torque(entry.name, against=entry.against)
+    if "value" in table:
+        table.fault("value", "a torque is either a value or a table: leave one out")
+    choices = OVER.get(table.motion, tuple(dict.fromkeys(OVER["pivot"] + OVER["slide"])))
+    if "over" not in table:
+        table.fault("", f'a table needs over = "{choices[0]}" or over = "time"')
+        return nothing
+    over = table.one_of("over", choices, choices[0])
+    if not over:  # columns of what?
+        return nothing
+    for key, owner in {"period": "time", **dict.fromkeys(KEYS, BARREL)}.items():
+        if key in table and over != owner:
+            table.fault(key, f'belongs to a table with over = "{owner}"')
+    if over == BARREL and entry.body is not None:
+        return mainspring_torque(table, entry.body, rows_of(table, units.ANGLE))
+    rows, period = rows_of(table, ABSCISSA[over]), None
+    if "period" in table and over == "time":
+        rows, period = repeated(table, rows)
+    return replace(nothing, over="time" if over == "time" else "angle", table=rows, period=period)
+
+
+def _damping(entry: Entry, swinging: Oscillator | None, spring_lost: bool) -> Damping:
+    table = entry.table
+    if table.is_table and not any(key in table for key in ("q_factor", "viscous", "quadratic", "coulomb")):
+        choices = 'q_factor = 250, viscous = "0.6 nN·m·s/rad", quadratic = "1 nN·m·s²/rad²" or coulomb = "10 nN·m"'
+        table.fault("", f"missing: {choices}")
+    for key in ("viscous", "quadratic", "coulomb"):
+        if table.quantity(key) < 0.0:
+            table.fault(key, "negative damping would drive the body", with_value=True)
+    viscous = _from_quality(entry, swinging, spring_lost) if "q_factor" in table else table.quantity("viscous")
+    return Damping(entry.name, viscous, table.quantity("quadratic"), table.quantity("coulomb"), entry.against)
+
+
+def _from_quality(entry: Entry, swinging: Oscillator | None, spring_lost: bool) -> float:
+    """Viscous damping c = sqrt(k J) / Q of a body that a spring or gravity pulls back."""
+    table = entry.table
+    if "viscous" in table:
+        table.fault("q_factor", "q_factor and viscous say the same thing: leave one out")
+    quality = table.positive("q_factor", "it is the quality factor of the oscillation, about 250 for a balance")
+    if entry.body and swinging is None and not spring_lost:
+        seen = f"neither a spring nor gravity pulls {entry.name} back, so it has no quality factor"
+        table.fault("q_factor", f"{seen}. Add a spring under [[springs]], or gravity and mass; or write viscous")
+    product = swinging.stiffness * swinging.inertia if swinging else NAN
+    return math.sqrt(product) / quality if product > 0.0 and quality > 0.0 else NAN

@@ -1,0 +1,194 @@
+"""How are the title, the run, the timegrapher and the expectations of the scene file read?"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from watchsim import units
+from watchsim.geometry.primitives import Point
+from watchsim.model import TANGENTIAL_CODE
+from watchsim.scene.errors import Faults
+from watchsim.scene.keys import EXPECTATION, RUN, SCENE, SCHEMA, TIMEGRAPHER, closest
+from watchsim.scene.scene import ALL, EVERY, KEPT, Expectation, Recording, Window
+from watchsim.scene.values import Table, shown
+from watchsim.tolerances import COARSEST_TOLERANCE, FINEST_TOLERANCE
+from watchsim.units import Dimension, UnitError, known_unit, parse, split
+
+# How does a scene file say what to keep of a run?
+#
+# `record` is one of these or a list of them: a window ["179 s", "180 s"], "all", "events", "statistics", "every 10".
+
+CHOICES = f'write {", ".join(KEPT)}, "{EVERY} 10" for every tenth row, or a window: two times, such as ["179 s", "180 s"]'
+DIGITS = 9  # of the number after "every"
+
+
+def read_record(table: Table, key: str = "record") -> Recording:
+    """What the key says; everything where it is absent, and where it cannot be read (the fault is noted)."""
+    value = table.mapping.get(key, [])
+    items = _items(value)
+    windows: list[Window] = []
+    keep, stride, words = ALL, 1, [item for item in items if _is_word(item)]
+    for i, item in enumerate(items):
+        path = key if items == [value] else f"{key}.{i}"
+        if not _is_word(item):
+            windows += _window(table, path, item)
+        elif item in KEPT:
+            keep = item
+        else:
+            stride = _stride(table, path, item)
+    kinds = [word for word in words if word in KEPT]
+    if len(set(kinds)) > 1:
+        table.fault(key, f"{' and '.join(kinds)} exclude each other: choose one", with_value=True)
+    elif len(words) - len(kinds) > 1:
+        table.fault(key, f"only one of {', '.join(word for word in words if word not in KEPT)} can hold", with_value=True)
+    return Recording(tuple(windows), keep, stride)
+
+
+def _items(value: Any) -> list[Any]:
+    """The parts of the value; two times in a list are one window."""
+    if not isinstance(value, (list, tuple)):
+        return [value]
+    is_window = len(value) > 0 and not any(isinstance(item, (list, tuple)) or _is_word(item) for item in value)
+    return [value] if is_window else list(value)
+
+
+def _is_word(item: object) -> bool:
+    return isinstance(item, str) and item[:1].isalpha()
+
+
+def _window(table: Table, path: str, item: object) -> list[Window]:
+    if not isinstance(item, (list, tuple)) or len(item) != 2:
+        table.faults.add(f"{table.path}.{path}", CHOICES, shown(item))
+        return []
+    start, end = table.point(path, item, units.TIME)
+    if start >= end or start < 0.0:
+        table.faults.add(f"{table.path}.{path}", "a window runs from an earlier to a later time, both from 0 s on", shown(item))
+        return []
+    return [(start, end)] if start < end else []  # what could not be read is no window
+
+
+def is_stride(text: str) -> bool:
+    """Whether the text is a number of rows that a run may have."""
+    return text.strip().isdecimal() and len(text.strip()) <= DIGITS and int(text) > 0
+
+
+def _stride(table: Table, path: str, item: str) -> int:
+    word, _, number = item.partition(" ")
+    if word == EVERY and is_stride(number):
+        return int(number)
+    meant = closest(item, (*KEPT, f"{EVERY} 10"))
+    hint = f'. Did you mean "{meant}"?' if meant and word != EVERY else ""
+    table.faults.add(f"{table.path}.{path}", f"{CHOICES}{hint}", shown(item))
+    return 1
+
+
+# How are the title, the run, the timegrapher and the expectations of the scene file read?
+
+DURATION = 1.0
+TOLERANCE = 1e-9
+WATCH_QUANTITIES = {
+    "amplitude": units.ANGLE,
+    "rate": units.RATE,
+    "period": units.TIME,
+    "beat_error": units.TIME,
+    "frequency": units.FREQUENCY,
+}
+EXAMPLES = {  # of what is expected, with its tolerance
+    "amplitude": ('"275°"', '"1°"'),
+    "rate": ('"4 s/d"', '"1 s/d"'),
+    "period": ('"0.25 s"', '"1 µs"'),
+    "beat_error": ('"0 ms"', '"0.1 ms"'),
+    "frequency": ('"4 Hz"', '"0.01 Hz"'),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Heading:
+    """Title, gravity (m/s²) and the tangential law of impacts with its nu."""
+
+    title: str
+    gravity: Point
+    tangential_law: str
+    nu: float
+
+
+def read_heading(mapping: Mapping[str, Any], faults: Faults) -> Heading:
+    table = Table(mapping.get("scene", {}), "scene", SCENE, faults)
+    schema = table.mapping.get("schema", SCHEMA)
+    if isinstance(schema, bool) or not isinstance(schema, (int, float)):
+        table.fault("schema", f"a plain number is needed here, without quotes: schema = {SCHEMA}", with_value=True)
+    elif schema != SCHEMA:
+        cure = "Install the watchsim that this scene was written for" if schema > SCHEMA else f"Write schema = {SCHEMA}"
+        table.fault("schema", f"this version of watchsim reads schema {SCHEMA}. {cure}", with_value=True)
+    law, nu = table.one_of("tangential_law", tuple(TANGENTIAL_CODE), "coulomb"), table.quantity("nu")
+    if nu < 0.0 or nu > 1.0:
+        table.fault("nu", "must lie between 0 and 1", with_value=True)
+    elif nu > 0.0 and law not in ("pg1996", ""):
+        table.fault("nu", f'belongs to tangential_law = "pg1996"; the law here is {law}. Leave it out', with_value=True)
+    return Heading(table.text("title"), table.pair("gravity"), law if table.is_table else "", nu)
+
+
+def read_run(mapping: Mapping[str, Any], faults: Faults) -> tuple[float, Recording, float]:
+    """Duration (s), what to keep, tolerance."""
+    table = Table(mapping.get("run", {}), "run", RUN, faults)
+    duration = table.positive("duration", "it is how long to simulate") if "duration" in table else DURATION
+    tolerance = table.quantity("tolerance", TOLERANCE)
+    if tolerance < FINEST_TOLERANCE or tolerance > COARSEST_TOLERANCE:
+        limits = f"{FINEST_TOLERANCE:g} and {COARSEST_TOLERANCE:g}"
+        table.fault("tolerance", f"must lie between {limits}; {TOLERANCE:g} is usual", with_value=True)
+    return duration, read_record(table), tolerance
+
+
+def read_timegrapher(mapping: Mapping[str, Any], faults: Faults) -> tuple[float | None, float | None]:
+    """Lift angle (rad) and frequency (Hz), None where the scene does not say."""
+    table = Table(mapping.get("timegrapher", {}), "timegrapher", TIMEGRAPHER, faults)
+    frequency = table.positive("frequency", "the rate is measured against it") if "frequency" in table else None
+    return _lift_angle(table), frequency
+
+
+def _lift_angle(table: Table) -> float | None:
+    if "lift_angle" not in table:
+        return None
+    angle = table.positive("lift_angle", "it is the arc of the balance during which it touches the lever")
+    if angle >= math.tau:
+        table.fault("lift_angle", "must be below a full turn", with_value=True)
+    return angle
+
+
+def read_expectations(mapping: Mapping[str, Any], faults: Faults) -> tuple[Expectation, ...]:
+    entries = mapping.get("expect", {})
+    if not isinstance(entries, dict):
+        faults.add("expect", 'write e.g. "amplitude" = { value = "275°", tolerance = "1°" } below [expect]', shown(entries))
+        return ()
+    found = (_expectation(key, Table(entry, f"expect.{key}", EXPECTATION, faults)) for key, entry in entries.items())
+    return tuple(one for one in found if one)
+
+
+def _expectation(key: str, table: Table) -> Expectation | None:
+    """In the unit of its value; the tolerance may have another unit of the same kind."""
+    value, tolerance = EXAMPLES.get(key, ("500", "3"))
+    if table.lacks(("value", "tolerance"), f"{{ value = {value}, tolerance = {tolerance} }}") or not table.is_table:
+        return None
+    try:
+        number, unit = split(table.mapping["value"])
+        dimension = WATCH_QUANTITIES.get(key) or _kind(unit)
+        parse(table.mapping["value"], dimension)
+    except UnitError as error:
+        table.fault("value", str(error), with_value=True)
+        return None
+    return Expectation(key, float(number), _tolerance(table, unit, dimension), unit)
+
+
+def _kind(unit: str) -> Dimension:
+    """What a quantity nobody knows beforehand must be: whatever its own unit says."""
+    return Dimension(f"value in {unit}", (known_unit(unit).powers,), unit, (unit, unit)) if unit else units.NUMBER
+
+
+def _tolerance(table: Table, unit: str, dimension: Dimension) -> float:
+    value = table.parsed("tolerance", table.mapping["tolerance"], dimension)
+    if value <= 0.0:
+        table.fault("tolerance", "must be above zero", with_value=True)
+    return value / known_unit(unit).factor

@@ -1,0 +1,480 @@
+"""How do bodies move while contacts couple them?
+
+Right-hand side of the smooth motion in the decided modes, and the monitors that tell when a mode ends: a normal force that
+vanishes, a slip that reverses, a friction force that reaches its cone, a contact that leaves its primitive, a contact that
+comes near Painlevé's paradox, a bearing with dry friction that stops or breaks loose.
+"""
+
+from __future__ import annotations
+
+import math
+
+from watchsim.contact.gaps import OPEN, STICK, contact_kinematics, place_body
+from watchsim.dynamics.acceleration import solve_mode
+from watchsim.dynamics.delassus import (
+    apply,
+    drive_through_contacts,
+    fill_delassus,
+    keep_independent,
+    own_acceleration,
+    solve_small,
+    unit_scale,
+)
+from watchsim.dynamics.forces import add_drag, add_loads, damping_power, drag_power, drive_power, forces
+from watchsim.dynamics.friction import is_paradox
+from watchsim.jit import hot_kernel, kernel
+from watchsim.model import FREE, OVER_TIME, REPEATED
+from watchsim.simulation.scratch import MONITORS
+from watchsim.tolerances import DEPENDENT_IN_STEPS, PAINLEVE, PAINLEVE_WATCHED, SLIP_SLACK, SLIP_WEIGHT, TAKEN_BACK_ALONG
+
+# Which closed contacts and coordinates act on each other?
+#
+# Coordinates that closed contacts join, or that belong to a free body or to a body and its carrier, form an island. No force or
+# impulse passes from one island to another: every contact problem is posed for one island, and what happens in it leaves the
+# others as they are.
+
+
+@kernel
+def _join(label, i, j):
+    """Give both coordinates' islands one label, the smaller."""
+    low, high = min(label[i], label[j]), max(label[i], label[j])
+    if low == high:
+        return
+    for k in range(len(label)):
+        if label[k] == high:
+            label[k] = low
+
+
+@kernel
+def _mover(model, b):
+    """A coordinate that moves body b, -1 where none does."""
+    body = model.bodies[b]
+    if body.first >= 0 or body.carrier < 0:
+        return body.first
+    return model.bodies[body.carrier].first
+
+
+@kernel
+def label_islands(model, ids, m, out_label):
+    """Number the islands that the contacts ids[:m] make: by coordinate, the smallest coordinate of its island."""
+    for i in range(len(out_label)):
+        out_label[i] = i
+    for b in range(len(model.bodies)):
+        body = model.bodies[b]
+        if body.motion == FREE:
+            _join(out_label, body.first, body.first + 1)
+            _join(out_label, body.first, body.first + 2)
+        if body.first >= 0 and body.carrier >= 0:
+            _join(out_label, body.first, model.bodies[body.carrier].first)
+    for j in range(len(model.joints)):
+        _join(out_label, model.joints[j].coordinate, model.joints[j].on)
+    for j in range(len(model.lines)):
+        a, b = model.lines[j].a, model.lines[j].b
+        if b >= 0 and model.bodies[a].first >= 0 and model.bodies[b].first >= 0:
+            _join(out_label, model.bodies[a].first, model.bodies[b].first)
+    for row in range(m):
+        contact = model.contacts[ids[row]]
+        i, j = _mover(model, model.primitives[contact.a].body), _mover(model, model.primitives[contact.b].body)
+        if i >= 0 and j >= 0:
+            _join(out_label, i, j)
+
+
+@kernel
+def island_of(model, label, k):
+    """The island that contact k belongs to."""
+    contact = model.contacts[k]
+    i = _mover(model, model.primitives[contact.a].body)
+    return label[i if i >= 0 else _mover(model, model.primitives[contact.b].body)]
+
+
+@kernel
+def sort_by_island(model, label, m, ids, out_upto):
+    """Put the contacts of each island in `ids` side by side, islands ascending, else in the order found.
+
+    upto[i] becomes the place behind the last contact of the island to which ids[i] belongs.
+    """
+    for row in range(m):
+        k, island = ids[row], island_of(model, label, ids[row])
+        place = row
+        while place > 0 and out_upto[place - 1] > island:
+            ids[place], out_upto[place] = ids[place - 1], out_upto[place - 1]
+            place -= 1
+        ids[place], out_upto[place] = k, island
+    end, island = m, -1
+    for row in range(m - 1, -1, -1):
+        if out_upto[row] != island:
+            end, island = row + 1, out_upto[row]
+        out_upto[row] = end
+
+
+@kernel
+def place_contacts(model, ids, first, last, pose, out_closed):
+    """Kinematics of the contacts ids[first:last] into the first rows of `out_closed`; returns how many."""
+    for place in range(first, last):
+        contact_kinematics(model, ids[place], pose, place - first, out_closed)
+    return last - first
+
+
+# How is drift off the contacts taken back?
+#
+# Closed contacts are brought to zero gap, and their gap rates (with the slip of sticking ones) to zero, by the smallest
+# change in the metric of the mass matrix: dq = -M⁻¹ W (Wᵀ M⁻¹ W)⁺ g.
+#
+# What is taken back is rounding, so the change must be of its size. Where two force directions are nearly parallel, or one has
+# next to no lever arm (friction on the line of centres), zeroing both rates would move the bodies by far more than the rates
+# themselves: directions that the others nearly determine are left as they are (docs/theory/method.md 2.10).
+
+# sine² of the angle below which a direction counts as one of the others, or as immovable
+
+
+@kernel
+def project_positions(closed, m, both, behind, work, out_q):
+    """Close the gaps of the first m contacts (only negative ones unless `both`); returns the deepest penetration found, m.
+
+    What is no drift but what flat faces have let bodies sink in (events/immovable.py) stays. `behind`: see `_has_drifted`.
+    """
+    deepest = 0.0
+    for i in range(m):
+        deepest = max(deepest, -closed.kin[i].g)
+    if deepest == 0.0 and not both:
+        return deepest
+    fill_delassus(closed, m, work)
+    for i in range(m):
+        work.row[i] = 2 * i
+    n = m
+    if not _close(closed, n, both, behind, work):
+        n = _choose(closed, m, both, behind, work)
+        _close(closed, n, both, behind, work)
+    for row in range(2 * m):
+        work.correction[row] = 0.0
+    for i in range(n):
+        work.correction[work.row[i]] = work.x[i]
+    apply(closed, m, work.correction, work.inverse, out_q)
+    return deepest
+
+
+@kernel
+def _wanted(closed, row, both, behind, work):
+    """By how much the gap of this row shall change, m."""
+    gap = closed.kin[row // 2].g
+    return -gap if (both or gap < 0.0) and _has_drifted(work, row, gap, behind) else 0.0
+
+
+@kernel
+def _has_drifted(work, row, gap, behind):
+    """False if a contact is deeper than `behind` (m), or so deep that taking it back would move it far along its face.
+
+    Bodies that have sunk in meet a face at its joint. On the way back to where it has no gap they would leave that face.
+    """
+    along = abs(work.G[row, row + 1]) * -gap
+    return gap >= -behind and along <= TAKEN_BACK_ALONG * behind * work.G[row, row]
+
+
+@kernel
+def _close(closed, n, both, behind, work):
+    """What closes the gaps of the n rows in `work.row` into `work.x`; False where their directions depend on each other."""
+    for i in range(n):
+        for j in range(n):
+            work.A[i, j] = work.G[work.row[i], work.row[j]]
+        work.rhs[i] = _wanted(closed, work.row[i], both, behind, work)
+        work.scale[i] = _scale_of(work, work.row[i], DEPENDENT_IN_STEPS)
+    return solve_small(work.A, work.rhs, n, work.scale, work.order, work.x, DEPENDENT_IN_STEPS) == n
+
+
+@kernel
+def _choose(closed, m, both, behind, work):
+    """Leave in `work.row` gaps whose directions do not depend on each other, of m; returns their number.
+
+    Not all can be closed: those are that the bodies meet first on the way there, so that none of the others is pressed in.
+    """
+    for i in range(m):
+        wanted, place = _scale_of(work, 2 * i, DEPENDENT_IN_STEPS) * _wanted(closed, 2 * i, both, behind, work), i
+        while place > 0 and work.rhs[place - 1] < wanted:
+            work.rhs[place], work.row[place] = work.rhs[place - 1], work.row[place - 1]
+            place -= 1
+        work.rhs[place], work.row[place] = wanted, 2 * i
+    for i in range(m):
+        work.scale[i] = _scale_of(work, work.row[i], DEPENDENT_IN_STEPS)
+    for i in range(m):
+        for j in range(m):
+            work.A[i, j] = work.scale[i] * work.G[work.row[i], work.row[j]] * work.scale[j]
+    return keep_independent(work.A, m, DEPENDENT_IN_STEPS, work.row)
+
+
+@kernel
+def project_velocities(closed, m, mode, independent, work, out_u):
+    """Make the gap rates of the first m contacts in force, and the slip of the sticking ones, zero.
+
+    `independent`: DEPENDENT_IN_STEPS or DEPENDENT_AT_EVENTS.
+    """
+    find_correction(closed, m, mode, independent, work)
+    apply(closed, m, work.correction, work.inverse, out_u)
+
+
+@kernel
+def find_correction(closed, m, mode, independent, work):
+    """The impulses of `project_velocities` into `work.correction`; fills `work.G`."""
+    fill_delassus(closed, m, work)
+    n = 0
+    for i in range(m):
+        state = mode[closed.ids[i]]
+        work.correction[2 * i], work.correction[2 * i + 1] = 0.0, 0.0
+        if state != OPEN:
+            n = _add_row(work, 2 * i, -closed.kin[i].gN_dot, n, independent)
+        if state == STICK:
+            n = _add_row(work, 2 * i + 1, -closed.kin[i].gT_dot, n, independent)
+    for i in range(n):
+        for j in range(n):
+            work.A[i, j] = work.G[work.row[i], work.row[j]]
+    solve_small(work.A, work.rhs, n, work.scale, work.order, work.x, independent)
+    for i in range(n):
+        work.correction[work.row[i]] = work.x[i]
+
+
+@kernel
+def rate_left(closed, m, i, work):
+    """Gap rate of contact i after the correction just found."""
+    rate = closed.kin[i].gN_dot
+    for row in range(2 * m):
+        rate += work.G[2 * i, row] * work.correction[row]
+    return rate
+
+
+@kernel
+def _add_row(work, row, rate, n, independent):
+    """Append the row of G with what its rate shall change by; returns the new number of rows."""
+    work.row[n], work.rhs[n], work.scale[n] = row, rate, _scale_of(work, row, independent)
+    return n + 1
+
+
+@kernel
+def _scale_of(work, row, independent):
+    """Unit diagonal for what can be moved, less for slips; zero for what next to no impulse along its direction moves."""
+    normal = row - row % 2
+    easiest = work.G[normal, normal] + work.G[normal + 1, normal + 1]
+    own = work.G[row, row]
+    if own <= independent * easiest:
+        return 0.0
+    return unit_scale(own) if row == normal else SLIP_WEIGHT * unit_scale(own)
+
+
+# Which bodies stand still on their contacts, and may be left alone until something touches them?
+
+
+@kernel
+def _share_terms(model, out_terms):
+    """Rounding in a coordinate of a free body comes from the forces on all three, whatever angle the body has."""
+    for b in range(len(model.bodies)):
+        if model.bodies[b].motion == FREE:
+            x, y, turn = model.bodies[b].first, model.bodies[b].first + 1, model.bodies[b].first + 2
+            gyration = (model.coordinates[turn].mass / model.coordinates[x].mass) ** 0.5
+            largest = max(out_terms[x], out_terms[y], out_terms[turn] / gyration)
+            out_terms[x], out_terms[y], out_terms[turn] = largest, largest, largest * gyration
+
+
+@kernel
+def _is_still(model, state, options, i, terms):
+    """Coordinate i has no velocity and no acceleration beyond rounding; `terms` is the sum of the forces on it without sign."""
+    coordinate = model.coordinates[i]
+    if abs(state.u[i]) * options.size > options.speed_zero * coordinate.scale:
+        return False
+    return abs(state.a[i]) * coordinate.mass <= options.sleep * terms
+
+
+@kernel
+def begin_terms(h, out_terms):
+    """The magnitudes of the forces h."""
+    for i in range(len(h)):
+        out_terms[i] = abs(h[i])
+
+
+@kernel
+def add_terms(closed, m, force, out_terms):
+    """Add the magnitudes of what the m contacts do to each coordinate."""
+    for i in range(m):
+        for k in range(closed.slots[i]):
+            normal, tangential = closed.w_N[i, k] * force[2 * i], closed.w_T[i, k] * force[2 * i + 1]
+            out_terms[closed.coord[i, k]] += abs(normal) + abs(tangential)
+
+
+@kernel
+def _will_change(model, table, t):
+    """A force over time has knots left; behind the last one it is as constant as any other. One that repeats always has."""
+    if table.over == REPEATED:
+        return True
+    return table.over == OVER_TIME and t < model.knots[table.start + table.count - 1, 0]
+
+
+@kernel
+def find_sleepers(model, state, options, event, f):
+    """Set `state.awake`: an island with a contact or a bearing that holds sleeps if it is still and nothing depends on time.
+
+    The f contacts in force are in `state.active`, their islands in `event.label`, accelerations in `state.a`, the
+    magnitudes of the forces on each coordinate in `event.terms`.
+    """
+    label, touched = event.label, event.touched
+    n = len(label)
+    for i in range(n):
+        state.awake[i] = 0
+    touched[:] = 0
+    for j in range(f):
+        touched[island_of(model, label, state.active[j])] = 1
+    _share_terms(model, event.terms)
+    for i in range(n):
+        if state.grip[i] == STICK:
+            touched[label[i]] = 1
+    for i in range(n):
+        if touched[label[i]] == 0 or not _is_still(model, state, options, i, event.terms[i]):
+            _wake(state, label, label[i])
+    for j in range(len(model.tables)):
+        if _will_change(model, model.tables[j], state.clock.time):
+            _wake(state, label, label[model.tables[j].coordinate])
+    for i in range(n):
+        if model.coordinates[i].driven:
+            _wake(state, label, label[i])
+    for i in range(n):
+        if state.awake[i] == 0:
+            state.u[i], state.a[i] = 0.0, 0.0
+
+
+@kernel
+def is_at_rest(model, state, b):
+    """True for fixed bodies and bodies asleep whose carrier, if any, is asleep as well."""
+    body = model.bodies[b]
+    if body.first >= 0 and state.awake[body.first]:
+        return False
+    return body.carrier < 0 or state.awake[model.bodies[body.carrier].first] == 0
+
+
+@kernel
+def _wake(state, label, group):
+    for i in range(len(label)):
+        if label[i] == group:
+            state.awake[i] = 1
+
+
+# How do bodies move while contacts couple them?
+
+NORMAL, TANGENTIAL, EXTENT, PARADOX = range(MONITORS)
+
+
+@kernel
+def bearing_monitor(model, state, options, j, smooth):
+    """Of coordinate j at the state being evaluated; its grip holds while it is positive."""
+    coordinate = model.coordinates[j]
+    if state.grip[j] == OPEN or state.awake[j] == 0:
+        return 1.0
+    if state.grip[j] == STICK:
+        return coordinate.coulomb - abs(smooth.load[j]) + state.now.lenience * options.force_zero * smooth.terms[j]
+    slack = 0.5 * state.now.lenience * options.speed_zero / options.size * coordinate.scale
+    return state.grip[j] * smooth.y[len(model.coordinates) + j] + slack
+
+
+@kernel
+def normal_margin(work, i, zero):
+    """Normal force of contact i in the modes solved, with the share `zero` of its terms on top; not positive where it pulls."""
+    normal = work.force[2 * i]
+    if normal == 0.0 and work.size[2 * i] == 0.0:
+        return 1.0  # nothing acts on this gap: touching bodies that travel together without a force
+    return normal + zero * work.size[2 * i] / work.G[2 * i, 2 * i]
+
+
+@kernel
+def grip_left(friction, work, i, zero):
+    """How far the friction force of contact i, which sticks, is from its bound, with the share `zero` of its terms on top."""
+    normal = work.force[2 * i]
+    if normal == 0.0 and work.size[2 * i] == 0.0:
+        return 1.0
+    slack = zero * work.size[2 * i] / work.G[2 * i, 2 * i]
+    return friction * normal - abs(work.force[2 * i + 1]) + slack
+
+
+@kernel
+def _tangential_monitor(model, state, options, i, work, closed):
+    k = closed.ids[i]
+    friction = model.laws[model.contacts[k].group].friction
+    if friction == 0.0:
+        return 1.0
+    if state.mode[k] == STICK:
+        return grip_left(friction, work, i, state.now.lenience * options.force_zero)
+    # A slip that counted as none may run against the mode decided: it ends only beyond what counts as none.
+    return state.mode[k] * closed.kin[i].gT_dot + state.now.lenience * SLIP_SLACK * options.speed_zero
+
+
+@hot_kernel
+def _watch(model, state, options, first, m, work, smooth):
+    """Set the monitors of an island's m contacts, the first of them at place `first` of `state.active`; returns the smallest.
+
+    Code MONITORS * place + kind; the mode holds while all are positive.
+    """
+    closed, values = smooth.closed, smooth.monitors
+    smallest = math.inf
+    for i in range(m):
+        code = MONITORS * (first + i)
+        values[code + NORMAL] = normal_margin(work, i, state.now.lenience * options.force_zero)
+        values[code + TANGENTIAL] = _tangential_monitor(model, state, options, i, work, closed)
+        values[code + EXTENT] = closed.kin[i].margin + 2.0 * options.extent
+        values[code + PARADOX] = -1.0 if is_paradox(work, m, i, PAINLEVE_WATCHED * PAINLEVE) else 1.0
+        for kind in range(MONITORS):
+            smallest = min(smallest, values[code + kind])
+    return smallest
+
+
+@kernel
+def _watch_bearings(model, state, options, smooth):
+    """Set the monitors of the bearings: one for each coordinate, codes after those of the contacts; returns the smallest."""
+    smallest = math.inf
+    code = MONITORS * state.now.awake_contacts
+    for j in range(len(model.coordinates)):
+        smooth.monitors[code + j] = bearing_monitor(model, state, options, j, smooth)
+        smallest = min(smallest, smooth.monitors[code + j])
+    return smallest
+
+
+@kernel
+def engage(model, state, smooth):
+    """Find the bodies that the active contacts join, the only ones whose places matter while the modes last."""
+    smooth.engaged[:] = 0
+    for i in range(state.now.awake_contacts):
+        contact = model.contacts[state.active[i]]
+        smooth.engaged[model.primitives[contact.a].body] = 1
+        smooth.engaged[model.primitives[contact.b].body] = 1
+
+
+@kernel
+def motion(model, state, options, t, work, smooth):
+    """dy/dt of `smooth.y` = (q, u, sums) at time t into `smooth.dy`; returns the smallest monitor.
+
+    `smooth.engaged` must be that of the active contacts; `work.inverse` is given.
+    """
+    n = len(model.coordinates)
+    q, u = smooth.y[:n], smooth.y[n : 2 * n]
+    closed, out = smooth.closed, smooth.dy
+    forces(model, t, q, u, work.h)
+    add_drag(model, state.grip, work.h)
+    for b in range(len(model.bodies)):
+        if smooth.engaged[b]:
+            place_body(model, b, q, u, smooth.pose)
+    for i in range(n):
+        out[i], out[n + i] = u[i], own_acceleration(model, work, i)
+        smooth.load[i], smooth.terms[i] = work.h[i], abs(work.h[i])
+    smallest, friction, driven, first = math.inf, 0.0, 0.0, 0
+    while first < state.now.awake_contacts:
+        m = place_contacts(model, state.active, first, state.upto[first], smooth.pose, closed)
+        solve_mode(model, closed, m, state.mode, state.now.lenience, work)
+        apply(closed, m, work.force, work.inverse, out[n : 2 * n])
+        add_loads(closed, m, work.force, state.grip, smooth.load, smooth.terms)
+        driven += drive_through_contacts(model, closed, m, work.force, u)
+        for i in range(m):
+            friction -= work.force[2 * i + 1] * closed.kin[i].gT_dot
+        smallest = min(smallest, _watch(model, state, options, first, m, work, smooth))
+        first += m
+    smallest = min(smallest, _watch_bearings(model, state, options, smooth))
+    for i in range(n):
+        if state.awake[i] == 0:
+            out[n + i] = 0.0
+    out[2 * n] = drive_power(model, t, q, u) + driven
+    out[2 * n + 1] = damping_power(model, q, u) + drag_power(model, state.grip, u)
+    out[2 * n + 2] = friction
+    state.counts.evaluations += 1
+    return smallest

@@ -1,0 +1,527 @@
+"""Which rows and events stay when the buffers are emptied?
+
+Those within the windows asked for, and where a recording has a tail, those of the last seconds of the run, whenever it ends.
+Of rows also the one before and the one after each of these stretches, so that the motion is known up to its very ends, however
+short it is.
+
+Parts about which nothing is open any more are put behind each other, and may go to files (see storage/columns.py).
+"""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, overload
+
+import numpy as np
+from numpy.typing import NDArray
+
+from watchsim.mechanism.compile import Compiled
+from watchsim.model import KIND_WORD
+from watchsim.scene.roles import nominal_frequency, roles
+from watchsim.scene.scene import ALL, STATISTICS, WHOLE_RUN, Recording, Scene, Window
+from watchsim.simulation.saved_state import TALLIED
+from watchsim.simulation.state import EVENT_DTYPE, EventKind
+from watchsim.storage.columns import Columns
+
+# What are the contacts of a run called, for people?
+#
+# A pair is put into words when it is looked at: a run may declare millions, and has events at a few of them.
+
+
+@dataclass(frozen=True)
+class Pair:
+    """The two primitives of a contact, for people: bodies, layers, a word for each primitive and its index in the body."""
+
+    group: int  # index in scene.contacts
+    body_a: str
+    primitive_a: str  # "corner", "arc", "line"
+    index_a: int
+    layer_a: str
+    body_b: str
+    primitive_b: str
+    index_b: int
+    layer_b: str
+
+    def __str__(self) -> str:
+        return (
+            f"{self.body_a}.{self.layer_a} {self.primitive_a} {self.index_a} / "
+            f"{self.body_b}.{self.layer_b} {self.primitive_b} {self.index_b}"
+        )
+
+
+Named = tuple[str, str, int, str]  # one primitive: body, word, index and layer, as in `Pair`
+
+
+class Pairs(Sequence[Pair]):
+    """All contacts of a run; read like a tuple of `Pair`, and equal to one with the same pairs.
+
+    `names` are the primitives; row k of `table` holds group, number of the one primitive and of the other of contact k.
+    """
+
+    def __init__(self, names: Sequence[Named], table: NDArray[np.int32]) -> None:
+        self.names, self.table = tuple(names), table
+        self.table.flags.writeable = False
+
+    def __len__(self) -> int:
+        return len(self.table)
+
+    @overload
+    def __getitem__(self, index: int) -> Pair: ...
+    @overload
+    def __getitem__(self, index: slice) -> tuple[Pair, ...]: ...
+    def __getitem__(self, index: int | slice) -> Pair | tuple[Pair, ...]:
+        if isinstance(index, slice):
+            return tuple(self._made(self.table[index]))
+        group, a, b = self.table[index].tolist()
+        return Pair(group, *self.names[a], *self.names[b])
+
+    def __iter__(self) -> Iterator[Pair]:
+        return self._made(self.table)
+
+    def _made(self, table: NDArray[np.int32]) -> Iterator[Pair]:
+        # Plain numbers, some at a time: reading one of an array takes a tenth of a microsecond.
+        for start in range(0, len(table), 4096):
+            for group, a, b in table[start : start + 4096].tolist():
+                yield Pair(group, *self.names[a], *self.names[b])
+
+    def __eq__(self, other: object) -> bool:
+        if isinstance(other, Pairs) and self.names == other.names:
+            return np.array_equal(self.table, other.table)
+        if isinstance(other, (Pairs, tuple)):
+            return len(self) == len(other) and all(one == two for one, two in zip(self, other, strict=True))
+        return NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(tuple(self))
+
+    def __repr__(self) -> str:
+        return f"<{len(self)} pairs of primitives>"
+
+    def of_body(self, name: str) -> NDArray[np.bool_]:
+        """For each pair: is that body on either side of it?"""
+        own = np.array([body == name for body, *_ in self.names], bool)
+        return np.asarray(own[self.table[:, 1]] | own[self.table[:, 2]])
+
+
+def pairs_of(compiled: Compiled) -> Pairs:
+    """The contacts of a model in words; row k belongs to contact number k."""
+    model, owners = compiled.model, compiled.owners
+    first = {name: owners.index(name) for name in dict.fromkeys(owners)}
+    # A plain list: reading a field of a record array takes a microsecond each time.
+    kinds = model.primitives.kind.tolist()
+    sides = zip(owners, kinds, compiled.layers, strict=True)
+    names = [(owner, KIND_WORD[kind], i - first[owner], layer) for i, (owner, kind, layer) in enumerate(sides)]
+    contacts = model.contacts
+    table = np.empty((len(contacts), 3), np.int32)
+    table[:, 0], table[:, 1], table[:, 2] = contacts.group, contacts.a, contacts.b
+    return Pairs(names, table)
+
+
+def as_pairs(pairs: Sequence[Pair]) -> Pairs:
+    """The same pairs, however they are kept."""
+    if isinstance(pairs, Pairs):
+        return pairs
+    numbers: dict[Named, int] = {}
+    rows: list[tuple[int, ...]] = []
+    for pair in pairs:
+        first = (pair.body_a, pair.primitive_a, pair.index_a, pair.layer_a)
+        second = (pair.body_b, pair.primitive_b, pair.index_b, pair.layer_b)
+        rows.append((pair.group, *(numbers.setdefault(side, len(numbers)) for side in (first, second))))
+    return Pairs(list(numbers), np.array(rows, np.int32).reshape(-1, 3))
+
+
+# Which events of an oscillator make a half swing, and which noises a beat?
+#
+# A half swing goes from one turning point through the rest position to the next.
+
+Indices = NDArray[np.int64]
+Array = NDArray[np.float64]
+Events = NDArray[Any]
+
+FEWEST_TURNS = 3
+QUIET = 0.1  # of half a period: so long the oscillator must have touched nothing before its first noise
+
+
+def half_swings(crossings: Events, turns: Events) -> tuple[Indices, Indices, Indices]:
+    """Rows of the passages that have a turning point on both sides, and the rows of these turning points.
+
+    An oscillator that knocks turns more than once between two passages: of these turning points the outermost counts.
+    """
+    nothing = np.zeros(0, np.int64)
+    if len(turns) < FEWEST_TURNS or len(crossings) == 0:
+        return nothing, nothing, nothing
+    heading = np.sign(crossings["value"])
+    side = np.concatenate([-heading[:1], heading])  # on which side of the rest position it is before the first passage, ...
+    interval = np.searchsorted(crossings["t"], turns["t"], side="right")
+    outermost = np.full(len(side), -1)
+    reach = side[interval] * turns["value"]
+    for i, k in enumerate(interval):
+        if outermost[k] < 0 or reach[i] > reach[outermost[k]]:
+            outermost[k] = i
+    complete = np.flatnonzero((outermost[:-1] >= 0) & (outermost[1:] >= 0))
+    return complete, outermost[complete], outermost[complete + 1]
+
+
+def first_noises(noises: Array, starts: Array, ends: Array, half_period: float) -> Array:
+    """For each half swing from `starts` to `ends` (s), the time of the first of the noises (s) after a silence; else nan.
+
+    What rings on from the half swing before (a knock at the turning point) is not silence and is passed over.
+    """
+    first_of_burst = noises[np.diff(noises, prepend=-np.inf) >= QUIET * half_period]
+    place = np.searchsorted(first_of_burst, starts, side="right")
+    found = np.append(first_of_burst, np.inf)[place]
+    return np.where(found < ends, found, np.nan)
+
+
+def since_two_before(times: Array) -> Array:
+    """From each time to the one two before it; nan for the first two."""
+    earlier: Array = np.concatenate([np.full(2, np.nan), times])[: len(times)]
+    return times - earlier
+
+
+def unevenness(marks: Array) -> Array:
+    """By how much the half period that ends with each mark differs from the one before it, s; nan for the first two."""
+    return np.diff(np.diff(marks, prepend=np.nan), prepend=np.nan)
+
+
+# What can be said of a run without keeping it?
+#
+# Sums over all half swings of its first sprung body and counts of its events, made as the run goes. Events are handed over part
+# by part; what a half swing still needs is carried on. However a run is cut, the same half swings are counted.
+
+# Of each half swing: amplitude (rad or m), time since the passage two before (s), unevenness of the ticks and of the passages
+# (s, with the sign of the direction of swing, so that chance does not add up to a beat error).
+QUANTITIES = ("amplitude", "period", "uneven_ticks", "uneven_passages")
+MOMENTS = ("number", "mean", "squares", "least", "largest")  # squares: of the distances from the mean, summed
+CARRIED = 8  # passages whose events are carried on; a half swing needs four: its beat is compared with those of the two before
+MOST_CARRIED = 20000  # events, of an oscillator that makes noises but never passes its rest position
+
+
+class Tally:
+    """Sums so far. `arrays()` is all it holds."""
+
+    def __init__(self, scene: Scene, pairs: Sequence[Pair]) -> None:
+        self.body, self.half_period = -1, 0.0
+        name = roles(scene).oscillator
+        if name is not None:
+            self.body = [body.name for body in scene.bodies].index(name)
+            self.half_period = 0.5 / (nominal_frequency(scene) or np.inf)
+            self._noisy = np.append(as_pairs(pairs).of_body(name), False)
+        self.kinds = np.zeros(max(EventKind) + 1, np.int64)
+        self.beats = np.zeros(2, np.int64)  # half swings, and those with a tick
+        self.moments = np.zeros((len(QUANTITIES), len(MOMENTS)))
+        self.moments[:, 3:] = np.inf, -np.inf
+        self.last = np.full(1, -np.inf)  # passage of the last half swing that was counted, s
+        self.carried: Events = np.zeros(0, EVENT_DTYPE)
+
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """Everything, to be saved."""
+        return {name: np.array(getattr(self, name)) for name in TALLIED}
+
+    def restore(self, arrays: Mapping[str, NDArray[Any]]) -> None:
+        """Go on from saved sums."""
+        for name, array in arrays.items():
+            setattr(self, name, np.array(array))
+
+    def fold(self, events: Events, last: bool = False) -> None:
+        """Count the next events; `last` says that no more will come."""
+        self.kinds += np.bincount(events["kind"], minlength=len(self.kinds))
+        if self.body < 0:
+            return
+        noise = (events["kind"] == EventKind.IMPACT) & self._noisy[np.where(events["contact"] >= 0, events["contact"], -1)]
+        own = np.concatenate([self.carried, events[noise | (events["body"] == self.body)]])
+        crossings, turns = own[own["kind"] == EventKind.CROSS], own[own["kind"] == EventKind.TURN]
+        self._count(crossings, turns, own["t"][own["kind"] == EventKind.IMPACT], last)
+        if len(crossings) > CARRIED:
+            own = own[own["t"] >= crossings["t"][-CARRIED]]
+        self.carried = own[-MOST_CARRIED:].copy()
+
+    def _count(self, crossings: Events, turns: Events, noises: Array, last: bool) -> None:
+        """Sums over the half swings that are over, and were not counted before."""
+        complete, before, after = half_swings(crossings, turns)
+        if not len(complete):
+            return
+        t, start, end = crossings["t"][complete], turns["t"][before], turns["t"][after]
+        ticks = first_noises(noises, start, end, self.half_period)
+        way = turns["value"][after] - turns["value"][before]
+        # Until the next passage a turning point further out may still come.
+        new = (t > self.last[0]) & (last | (complete < len(crossings) - 1))
+        values = (
+            0.5 * np.abs(way),
+            since_two_before(crossings["t"])[complete],
+            np.sign(way) * unevenness(ticks),
+            np.sign(way) * unevenness(t),
+        )
+        for moments, value in zip(self.moments, values, strict=True):
+            _add(moments, value[new & np.isfinite(value)])
+        self.beats += (int(new.sum()), int(np.isfinite(ticks[new]).sum()))
+        self.last[0] = np.max(t[new], initial=self.last[0])
+
+    def finished(self) -> dict[str, Any]:
+        """The sums as plain numbers, of a run that ends here; more may follow in this tally all the same."""
+        whole = copy.copy(self)
+        whole.restore(self.arrays())
+        whole.fold(np.zeros(0, EVENT_DTYPE), last=True)
+        kinds = {kind.name.lower(): int(whole.kinds[kind]) for kind in EventKind}
+        sums: dict[str, Any] = {"events_by_kind": kinds}
+        if self.body >= 0:
+            sums |= {"half_swings": int(whole.beats[0]), "ticks": int(whole.beats[1])}
+            for name, moments in zip(QUANTITIES, whole.moments.tolist(), strict=True):
+                sums[name] = dict(zip(MOMENTS, moments, strict=True)) if moments[0] else None
+        return sums
+
+
+def _add(moments: Array, values: Array) -> None:
+    """Take values into number, mean, sum of squares, least and largest (Chan, Golub and LeVeque 1983)."""
+    if not len(values):
+        return
+    number, mean, squares, least, largest = moments
+    count, centre = len(values), float(values.mean())
+    whole, apart = number + count, centre - mean
+    moments[0] = whole
+    moments[1] = mean + apart * count / whole
+    moments[2] = squares + float(((values - centre) ** 2).sum()) + apart * apart * number * count / whole
+    moments[3], moments[4] = min(least, values.min()), max(largest, values.max())
+
+
+# Which rows and events stay when the buffers are emptied?
+
+Bits = NDArray[np.bool_]
+
+USUAL_WINDOW = 2.0  # s, over which headline numbers are averaged
+USUAL_PERIODS = 8  # where that is longer
+MORE_PERIODS = 4  # what the first of these half swings needs from before
+
+
+class Recorder:
+    """Rows and events flushed so far, in parts; `tail` is in seconds.
+
+    `told` makes t, q, u, a of rows, and `events_told` events as they are to be kept.
+    """
+
+    def __init__(
+        self,
+        recording: Recording,
+        tail: float,
+        told: Callable[[Array], Sequence[Array]] | None = None,
+        events_told: Callable[[Events], Events] | None = None,
+    ) -> None:
+        self.recording, self.tail = recording, tail
+        self._told = told or columns_of
+        self._events_told = events_told or (lambda events: events)
+        self._done, self._done_events = Columns(), Columns()  # what stays of earlier parts
+        self._ends: list[tuple[int, int]] = []  # how many rows and events that are, after each of them
+        self._rows: list[tuple[Array, Bits]] = []  # of later parts, with those that stay for good
+        self._events: list[tuple[Events, Bits]] = []
+        self._met = 0  # rows met within the windows
+        # Is given events and t, q, u, a of rows as soon as they are settled, in order.
+        self.follow: Callable[[Events, Sequence[Array]], object] | None = None
+        self._last = (0, np.nan, True)  # the last row met: part, time (s), whether within a window
+
+    def stream(self, folder: Path) -> None:
+        """From now on hold rows and events in files in `folder` where they are many."""
+        self._done.folder = self._done_events.folder = folder
+
+    @property
+    def windows(self) -> tuple[Window, ...]:
+        """The times for which the loop must hand over rows."""
+        return WHOLE_RUN if self.recording.has_tail else self.recording.row_windows
+
+    @property
+    def parts(self) -> int:
+        """How often something was flushed."""
+        return len(self._ends) + len(self._rows)
+
+    def unfinished(self) -> dict[str, NDArray[Any]]:
+        """What decides about the rows that come next: how many were met, when the last one was, and itself where it waits."""
+        part, time, inside = self._last
+        waiting = part - len(self._ends)
+        rows, stays = self._rows[waiting] if 0 <= waiting < len(self._rows) else (np.zeros((0, 0)), np.zeros(0, bool))
+        waits = len(rows) > 0 and not stays[-1]
+        return {
+            "met": np.array(self._met),
+            "last": np.array([time, float(inside)]),
+            "row": rows[-1].copy() if waits else np.zeros(0),
+        }
+
+    def go_on(self, unfinished: Mapping[str, NDArray[Any]]) -> None:
+        """Decide about the next rows as if they followed on those before; nothing is known of them where it is empty."""
+        if not unfinished:
+            return
+        self._met = int(unfinished["met"])
+        time, inside = unfinished["last"].tolist()
+        self._last = 0, time, bool(inside)
+        row = unfinished["row"]
+        if len(row):
+            self._rows.append((row[None].copy(), np.zeros(1, bool)))
+            self._events.append((np.zeros(0, EVENT_DTYPE), np.zeros(0, bool)))
+        else:
+            self._last = 0, time, True
+
+    def flush(self, rows: Array, events: Events) -> None:
+        """Keep copies of what is wanted of the next rows and events, and forget earlier ones that were only of the tail."""
+        row_stays, event_stays = self._stays(rows[:, 0]), np.ones(len(events), bool)
+        if self.recording.keep == STATISTICS:
+            event_stays = within(events["t"], self.recording.windows)
+        if self.recording.keep == ALL:
+            # What comes next decides about the last row.
+            waits = row_stays | (np.arange(len(rows)) == len(rows) - 1)
+            rows, row_stays = rows[waits], row_stays[waits]
+        else:
+            rows = rows.copy()
+        self._rows.append((rows, row_stays))
+        self._events.append((events.copy(), event_stays))
+        while self._is_decided():
+            self._finish()
+
+    def _stays(self, times: Array) -> Bits:
+        """Rows within the windows, each so many-th, and those next to a window."""
+        windows = self.recording.row_windows
+        inside = within(times, windows)
+        stays = inside.copy()
+        if self.recording.stride > 1:
+            number = self._met + np.cumsum(inside) - 1
+            self._met += int(inside.sum())
+            stays &= number % self.recording.stride == 0
+        if len(times):
+            part, last, last_inside = self._last
+            across = _across(np.append(last, times), windows)
+            stays |= ~inside & (across | np.append(across[1:], False))
+            if across[0] and not last_inside:
+                self._rows[part - len(self._ends)][1][-1] = True
+            self._last = self.parts, float(times[-1]), bool(inside[-1])
+        return stays
+
+    def _is_decided(self) -> bool:
+        """Whether nothing that comes can make another row or event of the earliest open part stay."""
+        if len(self._rows) < 2:
+            return False
+        if not self.recording.has_tail:
+            return len(self._ends) < self._last[0]
+        before = self._last[1] - self.tail
+        for rows, _ in self._rows[:2]:
+            if not len(rows) or rows[-1, 0] >= before:
+                return False
+        return bool(np.max(self._events[0][0]["t"], initial=-np.inf) < before)
+
+    def _finish(self) -> None:
+        """Leave only what stays for good of the earliest open part."""
+        rows, row_stays = self._rows.pop(0)
+        events, event_stays = self._events.pop(0)
+        told = self._told(rows if row_stays.all() else rows[row_stays])
+        settled = self._events_told(events[event_stays])
+        if row_stays.any():
+            self._done.append(told)
+        if event_stays.any():
+            self._done_events.append([settled])
+        if self.follow is not None and (row_stays.any() or event_stays.any()):
+            self.follow(settled, told)
+        self._ends.append((self._done.rows, self._done_events.rows))
+
+    def for_good(self, end: float, parts: int) -> Bits:
+        """Which of the rows of the first `parts` flushes that `closed` gives stay however long the run goes on."""
+        done, waiting = self._parted(parts)
+        stays = _joined_bits([bits for _, bits in self._rows[:waiting]])
+        return np.append(np.ones(done[0], bool), stays[self._chosen(end)[: len(stays)]])
+
+    def counts(self, end: float, parts: int) -> tuple[int, int]:
+        """How many of the rows and events that `closed` gives are of the first `parts` flushes."""
+        done, waiting = self._parted(parts)
+        rows = self._chosen(end)[: sum(len(rows) for rows, _ in self._rows[:waiting])]
+        events = sum(int(bits.sum()) for bits in self._chosen_events(end)[:waiting])
+        return done[0] + int(rows.sum()), done[1] + events
+
+    def _parted(self, parts: int) -> tuple[tuple[int, int], int]:
+        """How many rows and events are done of the first `parts` flushes, and how many of these are open."""
+        done = min(parts, len(self._ends))
+        return (self._ends[done - 1] if done else (0, 0)), parts - done
+
+    def closed(self, end: float) -> tuple[Sequence[Array], Events] | None:
+        """All that is kept of a run that ends at `end` (s): t, q, u, a, and events; None for nothing."""
+        if not self._rows:
+            return None
+        rows = np.concatenate([rows for rows, _ in self._rows])[self._chosen(end)]
+        events = [part[bits] for (part, _), bits in zip(self._events, self._chosen_events(end), strict=True)]
+        told = self._events_told(np.concatenate(events))
+        return self._done.all([self._told(rows)]), self._done_events.all([[told]])[0]
+
+    def _chosen(self, end: float) -> Bits:
+        """Which rows of the open parts are kept of a run that ends now."""
+        since = self._since(end)
+        times = np.concatenate([np.zeros(0), *(rows[:, 0] for rows, _ in self._rows)])
+        stays = _joined_bits([bits for _, bits in self._rows])
+        first = int(np.searchsorted(times, since))
+        stays[first:] = True
+        if 0 < first < len(times) and times[first] > since:
+            stays[first - 1] = True
+        return stays
+
+    def _chosen_events(self, end: float) -> list[Bits]:
+        """The same of events, part by part."""
+        since = self._since(end)
+        return [stays | (part["t"] >= since) for part, stays in self._events]
+
+    def _since(self, end: float) -> float:
+        """The time (s) from which all is kept."""
+        return end - self.tail if self.recording.has_tail else np.inf
+
+    def spans(self, end: float) -> tuple[Window, ...]:
+        """The stretches of time whose rows are kept."""
+        ends = [(max(start, 0.0), min(stop, end)) for start, stop in self.recording.row_windows]
+        if self.recording.has_tail:
+            ends.append((max(0.0, end - self.tail), end))
+        return tuple((start, stop) for start, stop in _joined(ends) if start < stop)
+
+
+def columns_of(rows: Array) -> Sequence[Array]:
+    """t, q, u, a of rows."""
+    n = (rows.shape[1] - 1) // 3
+    return rows[:, 0], rows[:, 1 : 1 + n], rows[:, 1 + n : 1 + 2 * n], rows[:, 1 + 2 * n :]
+
+
+def _joined_bits(parts: list[Bits]) -> Bits:
+    return np.concatenate([np.zeros(0, bool), *parts])
+
+
+def stretch_rows(times: Array, spans: tuple[Window, ...]) -> Bits:
+    """Which rows lie within one of the stretches or next to it."""
+    if len(times) == 0:
+        return np.zeros(0, bool)
+    across = _across(times, spans)
+    return within(times, spans) | np.append(across, False) | np.append(False, across)
+
+
+def _across(times: Array, windows: tuple[Window, ...]) -> Bits:
+    """(len(times) - 1,): whether some of a window lies between one row and the next."""
+    across = np.zeros(len(times) - 1, bool)
+    for start, end in windows:
+        across |= (times[:-1] < end) & (times[1:] > start)
+    return across
+
+
+def within(times: Array, windows: tuple[Window, ...]) -> Bits:
+    """Which times lie within one of the windows."""
+    inside = np.zeros(len(times), bool)
+    for start, end in windows:
+        inside |= (times >= start) & (times <= end)
+    return inside
+
+
+def _joined(spans: list[Window]) -> list[Window]:
+    """The same, in order, overlapping ones made one."""
+    out: list[Window] = []
+    for start, end in sorted(spans):
+        if out and start <= out[-1][1]:
+            out[-1] = out[-1][0], max(end, out[-1][1])
+        else:
+            out.append((start, end))
+    return out
+
+
+def tail_length(hertz: float | None) -> float:
+    """How much of the end of a run is kept, s: all that its headline numbers need."""
+    period = 1.0 / hertz if hertz else 0.0
+    return max(USUAL_WINDOW, USUAL_PERIODS * period) + MORE_PERIODS * period

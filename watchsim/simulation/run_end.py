@@ -1,0 +1,178 @@
+"""What is known of where and why a run ended, in words?"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Container, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from watchsim.dynamics.lcp import LcpOutcome, Level
+from watchsim.model import PIVOT, Model
+from watchsim.simulation.coupled_motion import EXTENT, NORMAL, PARADOX, TANGENTIAL
+from watchsim.simulation.event_loop import BEARING, KINDS, TOUCHED
+from watchsim.simulation.recording import Pair
+from watchsim.simulation.scratch import RECENT, Ended, Scratch
+from watchsim.simulation.state import State
+from watchsim.tolerances import LEDGER_PER_TOLERANCE, LEDGER_SHARE
+
+# Where did the energy of a run go, and does its ledger close?
+
+
+def ledger(drive: float, dissipated: dict[str, float], stored: tuple[float, float], model: Model) -> dict[str, Any]:
+    """Work in = stored + dissipated + residual, J; `stored` at the start and at the end."""
+    at_start, at_end = stored
+    more, lost = at_end - at_start, sum(dissipated.values())
+    residual = drive - more - lost
+    # A swing that loses nothing gets nothing and stores nothing more: what it turns over is the scale of its rounding.
+    scale = max(abs(drive), abs(more), lost, at_end, at_start, _turned_over(model))
+    return {
+        "in_J": drive,
+        "dissipated": dissipated,
+        "stored_J": float(more),
+        "residual_J": float(residual),
+        "residual_relative": float(abs(residual) / scale) if scale else 0.0,
+    }
+
+
+def _turned_over(model: Model) -> float:
+    """What constant forces give to springs and take back in each swing, J."""
+    coordinates = model.coordinates
+    sprung = coordinates[(coordinates.stiffness > 0.0) & (coordinates.driven == 0)]
+    return float(np.max(2.0 * sprung.force**2 / sprung.stiffness, initial=0.0))
+
+
+def usual_energy(model: Model) -> float:
+    """Kinetic energy (J) below which motion is computed less closely: see the error control of integrator.py."""
+    own = model.coordinates[model.coordinates.driven == 0]
+    return float(0.5 * np.sum(own.mass * (own.scale * own.rate) ** 2))
+
+
+def ledger_fails(energy: dict[str, Any], held: float, tolerance: float) -> bool:
+    """True if the residual of the ledger is more than rounding; `held` (J): the most energy that was ever in the motion."""
+    turned_over = held + abs(energy["in_J"]) + abs(energy["stored_J"]) + sum(energy["dissipated"].values())
+    return bool(abs(energy["residual_J"]) > max(LEDGER_SHARE, LEDGER_PER_TOLERANCE * tolerance) * turned_over)
+
+
+# What is known about a complementarity problem that nothing solved?
+#
+# All that is needed to look at it elsewhere: the matrices, the contacts in words, and the state it arose in.
+
+LEMKE_ENDS = {
+    LcpOutcome.SOLVED: "a solution",
+    LcpOutcome.RAY: "ray",
+    LcpOutcome.TOO_MANY_PIVOTS: "too many pivots",
+    LcpOutcome.INEXACT: "not a solution",
+}
+ADVICE = (
+    "Less friction at the contacts named here: near mu |b| = |a| of a rotor's lever arms bodies jam.",
+    "Restitution 0 at these contacts: then only the compression must be solved.",
+    "A tighter tolerance, or a start a little away from this position.",
+)
+JAM = (
+    "This is a jam: a driven body goes on whatever is in its way. See it with watchsim movie RUN --contacts. Let the other be "
+    "out of the way by then, make room in the drawing, or drive by a torque instead"
+)
+
+
+def failure_of(state: State, scratch: Scratch, pairs: Sequence[Pair]) -> dict[str, Any]:
+    """The last problem posed, as plain values. Units SI.
+
+    level       of the problem: acceleration, compression or expansion
+    contacts    bodies and primitives in words with contact number, mode, gap rate and slip; two rows of G each, N then T
+    G, b        Delassus matrix and the accelerations or velocities of its rows without contact forces
+    reversed    rows of G and b that A and rhs have with the opposite sign (dynamics/handedness.py)
+    A, rhs      of y = A x + rhs in the scaling of dynamics/coulomb.py
+    """
+    work = scratch.work
+    m, elements, bearings = int(work.posed.contacts), int(work.posed.elements), int(work.posed.bearings)
+    level = Level(int(work.posed.level))
+    closed = scratch.event.rest if level == Level.ACCELERATION else scratch.event.closed
+    rows, n = 2 * m + bearings, m + 2 * elements
+    return {
+        "level": level.name.lower(),
+        "lemke_ended_with": LEMKE_ENDS[LcpOutcome(int(work.posed.lemke))],
+        "what_to_try": list(ADVICE),
+        "t": float(state.clock.time),
+        "q": state.q.tolist(),
+        "u": state.u.tolist(),
+        "contacts": [_contact(int(k), closed.kin[row], state, pairs) for row, k in enumerate(closed.ids[:m])],
+        "bearings": work.dry[:bearings].tolist(),
+        "G": work.G[:rows, :rows].tolist(),
+        "b": work.b[:rows].tolist(),
+        "reversed": np.flatnonzero(work.hand[:rows] < 0.0).tolist(),
+        "A": work.A[:n, :n].tolist(),
+        "rhs": work.rhs[:n].tolist(),
+    }
+
+
+def driven_into(failure: Mapping[str, Any] | None, pairs: Sequence[Pair], driven: Container[str]) -> str:
+    """Which driven body jams which other, and what to change; "" where none takes part in the failed problem."""
+    found: dict[str, None] = {}  # each sentence once, in order
+    for contact in failure["contacts"] if failure else ():
+        pair = pairs[contact["number"]]
+        for own, other in ((pair.body_a, pair.body_b), (pair.body_b, pair.body_a)):
+            if own in driven:
+                found[f"{own}, which is driven, leaves {other} no way out at {pair}"] = None
+    return f"{'; '.join(found)}. {JAM}" if found else ""
+
+
+def _contact(k: int, kinematics: Any, state: State, pairs: Sequence[Pair]) -> dict[str, Any]:
+    return {
+        "number": k,
+        "between": str(pairs[k]),
+        "mode": int(state.mode[k]),
+        "gap_m": float(kinematics.g),
+        "gap_rate_m_per_s": float(kinematics.gN_dot),
+        "slip_m_per_s": float(kinematics.gT_dot),
+    }
+
+
+# What is known of where and why a run ended, in words?
+
+ADVICE_STOP_DETAILS = "Try a tighter tolerance; if that does not help, this is a fault of the program, and the scene shows it"
+MANY = 6  # different causes named
+
+_WORDS = {
+    NORMAL: "the force ends at {}",
+    TANGENTIAL: "slip or grip ends at {}",
+    EXTENT: "an edge ends at {}",
+    PARADOX: "no finite force holds {}",
+    TOUCHED: "{} touch",
+}
+
+
+def unaccounted(energy: Mapping[str, Any]) -> str:
+    """How far the ledger is from closing."""
+    return f"{energy['residual_J']:.3g} J are unaccounted for, of {energy['in_J']:.3g} J put in. {ADVICE_STOP_DETAILS}"
+
+
+def unexplained(state: State, pairs: Sequence[Pair]) -> str:
+    """The contacts in force where velocities changed by more than impulses explain."""
+    ids = state.active[: state.now.awake_contacts].tolist()
+    touching = "in contact: " + "; ".join(str(pairs[k]) for k in ids[:MANY]) if ids else ""
+    return ". ".join(filter(None, (touching, ADVICE_STOP_DETAILS)))
+
+
+def what_alternates(ended: Ended, pairs: Sequence[Pair], bodies: Sequence[str]) -> str:
+    """What ended the last steps, most frequent first, with bodies and edges; "" where nothing did."""
+    counted = Counter(ended.by[: min(int(ended.number), RECENT)].tolist())
+    words = [f"{_cause(code, pairs, bodies)} ({times}×)" for code, times in counted.most_common(MANY)]
+    return f"what alternates: {'; '.join(words)}" if words else ""
+
+
+def _cause(code: int, pairs: Sequence[Pair], bodies: Sequence[str]) -> str:
+    number, kind = divmod(code, KINDS)
+    if kind == BEARING:
+        return f"dry friction in the bearing of {bodies[number]} holds or lets go"
+    return _WORDS[kind].format(pairs[number])
+
+
+def furthest(state: State, model: Model, bodies: Sequence[str]) -> str:
+    """The body that has gone furthest, in words: how far, and to what its position is rounded."""
+    i = int(np.argmax(np.abs(state.q) / model.coordinates.scale))
+    b = int(model.coordinates[i].body)
+    turns = model.bodies[b].motion == PIVOT or i == model.bodies[b].first + 2
+    place, unit = abs(float(state.q[i])), "rad" if turns else "m"
+    return f"{bodies[b]} is at {place:.2g} {unit}, rounded to {np.spacing(place):.1g} {unit}. Check forces, masses and gravity"

@@ -1,0 +1,365 @@
+"""Where does the event loop work? Room allocated once, by owner.
+
+Each part belongs to the kernels that its docstring names; what a kernel finds it returns, or leaves in the part it is given.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from watchsim.contact.gaps import OPEN, STICK, Closed, ClosedRef, closed_contacts, poses
+from watchsim.dynamics.delassus import ContactWork, ContactWorkRef, contact_work
+from watchsim.dynamics.lcp import LcpWorkRef
+from watchsim.jit import by_reference, inlined, kernel
+from watchsim.model import Model, Records, blank, dtype_of, records
+from watchsim.simulation.state import EVENT_DTYPE, EventKind, room_for
+
+# How far is the loop to run, and where does it write what is kept?
+
+Array = NDArray[np.float64]
+
+
+class Until:
+    """How far the loop is to run."""
+
+    slice_end: float  # s: it may come back after that
+    end: float  # s: the run's end
+    may_cut: int  # 1 if the step that reaches the end may be cut short by it
+    steps: float  # counted down; it may come back when none is left
+
+
+def new_until(slice_end: float = 0.0, end: float = 0.0, may_cut: bool = False, steps: float = 0.0) -> Until:
+    """How far the loop is to run."""
+    until = blank(Until)
+    until.slice_end, until.end, until.may_cut, until.steps = slice_end, end, int(may_cut), steps
+    return until
+
+
+class Used:
+    """How much of the buffers is filled."""
+
+    rows: int
+    events: int
+
+
+class Record(NamedTuple):
+    """Rows (t, q, u, a), events, and the times within which rows are kept."""
+
+    rows: Array
+    events: Records
+    used: Used
+    windows: Array  # (k, 2)
+
+
+RecordRef = by_reference(Record, __name__)
+
+
+def new_record(model: Model, rows: int, events: int, windows: Array) -> Record:
+    """Empty buffers."""
+    n = len(model.coordinates)
+    return Record(np.zeros((rows, 1 + 3 * n)), np.zeros(events, EVENT_DTYPE).view(np.recarray), blank(Used), windows)
+
+
+# What is written down while the loop runs?
+
+
+@kernel
+def is_kept(record, t, length):
+    """True if rows within `length` seconds after t lie in one of the windows."""
+    for j in range(len(record.windows)):
+        if record.windows[j, 0] <= t + length and t <= record.windows[j, 1]:
+            return True
+    return False
+
+
+@kernel
+def keep_row(state, record, t, q, u, a):
+    """Append a row unless t lies outside all windows."""
+    if not is_kept(record, t, 0.0):
+        return
+    row = record.used.rows
+    n = len(q)
+    record.rows[row, 0] = t
+    for i in range(n):
+        record.rows[row, 1 + i] = q[i]
+        record.rows[row, 1 + n + i] = u[i]
+        record.rows[row, 1 + 2 * n + i] = a[i]
+    record.used.rows = row + 1
+
+
+@kernel
+def keep_event(state, record, kind, contact, body, value):
+    """Append an event at the current time and return its row."""
+    row = record.used.events
+    event = record.events[row]
+    event.t, event.kind, event.contact, event.body, event.value = state.clock.time, kind, contact, body, value
+    event.impulse_normal, event.impulse_tangential, event.energy_lost = 0.0, 0.0, 0.0
+    record.used.events = row + 1
+    state.counts.events += 1
+    return row
+
+
+@kernel
+def keep_change(state, record, k, old):
+    """Write down how contact k's mode changed."""
+    new = state.mode[k]
+    if new == old:
+        return
+    if old == OPEN:
+        keep_event(state, record, EventKind.CLOSE, k, -1, float(new))
+    elif new == OPEN:
+        keep_event(state, record, EventKind.OPEN, k, -1, 0.0)
+    elif new == STICK:
+        keep_event(state, record, EventKind.STICK, k, -1, 0.0)
+    else:
+        keep_event(state, record, EventKind.SLIDE, k, -1, float(new))
+
+
+# Where does the event loop work? Room allocated once, by owner.
+
+Integers = NDArray[np.int64]
+Modes = NDArray[np.int8]
+
+MONITORS = 4  # what is watched of each contact in force
+RECENT = 64  # events remembered for the case that time does not advance
+SUMS = 3  # integrated along with the motion: work in, damping, friction
+FLIGHT, COUPLED = 0, 1  # kinds of steps
+
+
+class Span:
+    """When a step lies, and what it is."""
+
+    start: float  # s
+    length: float  # s
+    kind: int  # FLIGHT or COUPLED
+
+
+class Step(NamedTuple):
+    """One smooth step from (q, u): an exact flight, or a Runge-Kutta step with its continuous extension."""
+
+    span: Span
+    q: Array
+    u: Array
+    bound: Array  # bound of each |q''| over the step
+    y0: Array  # q, u, sums
+    y1: Array
+    stages: Array  # (16, 2 n + SUMS)
+    dense: Array  # (7, 2 n + SUMS)
+
+
+StepRef = by_reference(Step, __name__)
+
+
+class Smooth(NamedTuple):
+    """The coupled motion at one time (coupled_motion.py)."""
+
+    y: Array  # q, u, sums
+    dy: Array  # their time derivatives
+    pose: Any  # of the bodies that contacts in force join
+    closed: Closed  # the contacts of one island after another
+    engaged: Modes  # by body: 1 if a contact in force touches it
+    monitors: Array  # by code (coupled_motion.py)
+    before: Array  # the same at an earlier time of the step, at first at its start
+    fired: Integers  # codes of those that are not positive (contact_mode_end.py)
+    load: Array  # force on each coordinate that dry friction holds
+    terms: Array  # sum of the magnitudes it is made of
+
+
+SmoothRef = by_reference(Smooth, __name__)
+
+
+class Waiting:
+    """A contact that may close, or, with `contact` NO_CONTACT, a pair of bodies that then enters its next cell."""
+
+    contact: int
+    pair: int
+    start: float  # s in the step: where the next look begins
+    until: float  # s in the step: where the pair leaves its cell
+    stays_open: float  # s in the step: it cannot close before
+
+
+class Path(NamedTuple):
+    """Where bodies are within a step (step_path.py), and which contacts may close there (time_of_impact.py)."""
+
+    q: Array
+    u: Array
+    pose: Any
+    probe: Closed  # kinematics of one contact
+    waiting: Any  # records of `Waiting`: contacts that may close, the one that could be first in front
+
+
+PathRef = by_reference(Path, __name__)
+
+
+class EventRoom(NamedTuple):
+    """The contacts closed at an event (after_event.py and what it calls)."""
+
+    pose: Any
+    closed: Closed  # of one island
+    rest: Closed  # those of them in I_N
+    pace: Array  # largest magnitude of each velocity at the instant being settled
+    zero: Array  # by row of `closed`: the gap rate that counts as zero, see zero_rates.py
+    label: Integers  # by coordinate: its island
+    listed: Integers  # the closed contacts, by island
+    upto: Integers  # by place in `listed`: the place behind the last contact of the same island
+    decided: Modes  # by contact, of those in I_N: the modes the complementarity problem has decided
+    trial: Modes  # by contact: the modes in which velocities are corrected
+    in_force: Integers  # contacts in force, before those of awake bodies are put first
+    touched: Modes  # by island: 1 if a contact or bearing holds it
+    terms: Array  # sum of the magnitudes of the forces on each coordinate
+
+
+EventRoomRef = by_reference(EventRoom, __name__)
+
+
+class ImpactRoom(NamedTuple):
+    """One impact (collision.py) and the end of a chatter (chatter.py)."""
+
+    restitution: Array  # by row of the closed contacts
+    impulse: Array  # N and T by row
+    before: Array  # velocities before it
+    rates_before: Array  # of the contacts, N and T by row
+    rates: Array  # after it
+    grip: Modes  # by coordinate, right after it
+    ending: Array  # impulses that end a chatter, N and T by row of `EventRoom.rest`
+    mode: Modes  # by contact: in which a chatter ends
+
+
+ImpactRoomRef = by_reference(ImpactRoom, __name__)
+
+
+class UnknownCell:
+    """Where the table of cells had no answer."""
+
+    pair: int  # of bodies
+
+
+class Asked(NamedTuple):
+    """What the loop asks Python about when it comes back with CELL_UNKNOWN."""
+
+    cell: UnknownCell
+    at: Array  # coordinates
+
+
+AskedRef = by_reference(Asked, __name__)
+
+
+@kernel
+def request_cell(asked, p, q):
+    """Note the cell of body pair p at coordinates q."""
+    asked.cell.pair = p
+    for i in range(len(q)):
+        asked.at[i] = q[i]
+
+
+class Ended:
+    """What ended the last steps, see `_note_end` in advance.py; the newest overwrites the oldest."""
+
+    number: int  # of steps ended so far
+    by: Annotated[Integers, RECENT]
+
+
+class Scratch(NamedTuple):
+    """All of it."""
+
+    step: Step
+    work: ContactWork
+    smooth: Smooth
+    path: Path
+    event: EventRoom
+    impact: ImpactRoom
+    asked: Asked
+    ended: Ended
+
+
+ScratchRef = by_reference(Scratch, __name__)
+
+
+@inlined
+def scratch_by_reference(scratch):
+    """The scratch arrays as nested structs; what holds structs itself names them first."""
+    smooth, path, event = scratch.smooth, scratch.path, scratch.event
+    return ScratchRef(
+        StepRef(*scratch.step),
+        ContactWorkRef(LcpWorkRef(*scratch.work.lcp), *scratch.work[1:]),
+        SmoothRef(smooth.y, smooth.dy, smooth.pose, ClosedRef(*smooth.closed), *smooth[4:]),
+        PathRef(path.q, path.u, path.pose, ClosedRef(*path.probe), *path[4:]),
+        EventRoomRef(event.pose, ClosedRef(*event.closed), ClosedRef(*event.rest), *event[3:]),
+        ImpactRoomRef(*scratch.impact),
+        AskedRef(*scratch.asked),
+        scratch.ended,
+    )
+
+
+def asked_of(coordinates: int) -> Asked:
+    """Room for one question."""
+    return Asked(blank(UnknownCell), np.zeros(coordinates))
+
+
+def _step_room(n: int) -> Step:
+    width = 2 * n + SUMS
+    vectors = {name: np.zeros(n) for name in ("q", "u", "bound")}
+    wide = {name: np.zeros(width) for name in ("y0", "y1")}
+    return Step(span=blank(Span), stages=np.zeros((16, width)), dense=np.zeros((7, width)), **vectors, **wide)
+
+
+def _smooth_room(n: int, bodies: int, room: int) -> Smooth:
+    width, monitors = 2 * n + SUMS, MONITORS * (room + n)
+    return Smooth(
+        y=np.zeros(width),
+        dy=np.zeros(width),
+        pose=poses(bodies),
+        closed=closed_contacts(room),
+        engaged=np.zeros(bodies, np.int8),
+        monitors=np.zeros(monitors),
+        before=np.zeros(monitors),
+        fired=np.zeros(monitors, np.int64),
+        load=np.zeros(n),
+        terms=np.zeros(n),
+    )
+
+
+def _event_room(n: int, bodies: int, contacts: int, room: int) -> EventRoom:
+    return EventRoom(
+        pose=poses(bodies),
+        closed=closed_contacts(room),
+        rest=closed_contacts(room),
+        pace=np.zeros(n),
+        zero=np.zeros(room),
+        label=np.zeros(n, np.int64),
+        listed=np.zeros(room, np.int64),
+        upto=np.zeros(room, np.int64),
+        decided=np.zeros(contacts, np.int8),
+        trial=np.zeros(contacts, np.int8),
+        in_force=np.zeros(room, np.int64),
+        touched=np.zeros(n, np.int8),
+        terms=np.zeros(n),
+    )
+
+
+def _impact_room(n: int, contacts: int, room: int) -> ImpactRoom:
+    by_row = {name: np.zeros(2 * room) for name in ("impulse", "rates_before", "rates", "ending")}
+    grip, mode = np.zeros(n, np.int8), np.zeros(contacts, np.int8)
+    return ImpactRoom(restitution=np.zeros(room), before=np.zeros(n), grip=grip, mode=mode, **by_row)
+
+
+def _path_room(n: int, bodies: int, entries: int) -> Path:
+    return Path(np.zeros(n), np.zeros(n), poses(bodies), closed_contacts(1), records(dtype_of(Waiting), entries))
+
+
+def new_scratch(model: Model) -> Scratch:
+    """Room to work for one model."""
+    n, bodies, contacts, room = len(model.coordinates), len(model.bodies), len(model.contacts), room_for(model)
+    return Scratch(
+        step=_step_room(n),
+        work=contact_work(room, n),
+        smooth=_smooth_room(n, bodies, room),
+        path=_path_room(n, bodies, contacts + len(model.pairs)),
+        event=_event_room(n, bodies, contacts, room),
+        impact=_impact_room(n, contacts, room),
+        asked=asked_of(n),
+        ended=blank(Ended),
+    )

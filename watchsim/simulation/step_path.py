@@ -1,0 +1,344 @@
+"""Along which path do bodies move within a step, and how sharply can it bend?
+
+In a coupled step the motion is the continuous extension: a polynomial of degree 7 in the time of the step. Its velocity is
+the derivative of that polynomial, and its acceleration is bounded by the Bernstein coefficients of the second derivative.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from watchsim.contact.cell_lookup import along
+from watchsim.contact.gaps import place_body
+from watchsim.jit import hot_kernel, kernel
+from watchsim.model import FREE
+from watchsim.simulation.dop853 import coordinate_within, dense, dense_bend, dense_value, flight_acceleration
+from watchsim.simulation.free_motion import (
+    acceleration_bound,
+    fastest_change,
+    flow,
+    is_open,
+    narrowed,
+    next_time,
+    opened,
+    quarter_period,
+)
+from watchsim.simulation.scratch import FLIGHT, is_kept, keep_event, keep_row
+from watchsim.simulation.state import EventKind
+from watchsim.tolerances import FLIGHT_SIZES, PASSAGE_RESOLUTION
+
+# How does an exact flight go: how long, with which work and losses, and with which rows?
+#
+# Where no contact couples the moving bodies, each coordinate follows its own closed form (see `free`) up to the next event.
+
+FLIGHT_PHASE = 1.6  # rad of the fastest coordinate's own time scale: the longest flight
+
+# Gauss-Legendre nodes and weights on [0, 1]: damping losses of a flight of at most a quarter period, to rounding.
+_NODES = (0.019855071751231856, 0.10166676129318664, 0.2372337950418355, 0.4082826787521751)
+_WEIGHTS = (0.05061426814518813, 0.11119051722668724, 0.15685332293894363, 0.18134189168918099)
+
+
+@kernel
+def can_fly(model, state):
+    """True if no contact is in force between awake bodies and all awake coordinates have exact solutions."""
+    if state.now.awake_contacts > 0:
+        return False
+    for i in range(len(model.coordinates)):
+        if state.awake[i] and not model.coordinates[i].linear:
+            return False
+    return True
+
+
+@kernel
+def _row_spacing(model, options, i):
+    """Longest time between rows for coordinate i in flight: its own time scale."""
+    coordinate = model.coordinates[i]
+    spacing = math.inf
+    if coordinate.stiffness > 0.0:
+        spacing = options.row_phase * math.sqrt(coordinate.mass / coordinate.stiffness)
+    if coordinate.viscous > 0.0:
+        spacing = min(spacing, options.row_phase * coordinate.mass / coordinate.viscous)
+    return spacing
+
+
+@kernel
+def _time_far(model, state, i):
+    """A time (s) in which coordinate i goes no further than `FLIGHT_SIZES` times the scene's size.
+
+    What falls with 1e30 m/s² would be looked for in 1e27 places along one step.
+    """
+    far = FLIGHT_SIZES * model.coordinates[i].scale
+    speed, bound = abs(state.u[i]), acceleration_bound(model.coordinates[i], state.grip[i], state.q[i], state.u[i])
+    both = speed + math.sqrt(speed * speed + 2.0 * bound * far)
+    return 2.0 * far / both if both > 0.0 else math.inf
+
+
+@kernel
+def flight_length(model, state, options):
+    """(length, row spacing): of an exact flight now."""
+    length, spacing = options.max_step, math.inf
+    for i in range(len(model.coordinates)):
+        if state.awake[i]:
+            length = min(length, quarter_period(model.coordinates[i]), _time_far(model, state, i))
+            spacing = min(spacing, _row_spacing(model, options, i))
+    return min(length, FLIGHT_PHASE / options.row_phase * spacing), spacing
+
+
+@kernel
+def begin_flight(model, state, length, out_step):
+    """Make the current step an exact flight of all awake coordinates."""
+    step = out_step
+    step.span.kind = FLIGHT
+    step.span.start, step.span.length = state.clock.time, length
+    for i in range(len(model.coordinates)):
+        step.q[i], step.u[i] = state.q[i], state.u[i]
+        step.bound[i] = 0.0
+        if state.awake[i]:
+            step.bound[i] = acceleration_bound(model.coordinates[i], state.grip[i], state.q[i], state.u[i])
+
+
+@kernel
+def add_flight_sums(model, state, step, end):
+    """Work in and damping losses of the first `end` seconds of a flight."""
+    for i in range(len(model.coordinates)):
+        coordinate = model.coordinates[i]
+        if not state.awake[i] or coordinate.driven:
+            continue
+        state.sums.drive += coordinate.force * (coordinate_within(model, state, step, i, end)[0] - step.q[i])
+        if coordinate.coulomb > 0.0:
+            state.sums.damping += coordinate.coulomb * abs(coordinate_within(model, state, step, i, end)[0] - step.q[i])
+        if coordinate.viscous == 0.0:
+            continue
+        total = 0.0
+        for j in range(4):
+            first = coordinate_within(model, state, step, i, end * _NODES[j])[1]
+            last = coordinate_within(model, state, step, i, end * (1.0 - _NODES[j]))[1]
+            total += _WEIGHTS[j] * (first * first + last * last)
+        state.sums.damping += coordinate.viscous * end * total
+
+
+@kernel
+def keep_flight_rows(model, state, end, spacing, step, record):
+    """Rows of a flight, evenly spaced, the last one at its end; brings the state there."""
+    n = len(model.coordinates)
+    rows = 1 if spacing == math.inf or not is_kept(record, step.span.start, end) else max(1, math.ceil(end / spacing))
+    for row in range(1, rows + 1):
+        tau = end * row / rows if row < rows else end
+        for i in range(n):
+            state.q[i], state.u[i] = coordinate_within(model, state, step, i, tau)
+            state.a[i] = flight_acceleration(model, state, i, state.q[i], state.u[i])
+        keep_row(state, record, step.span.start + tau, state.q, state.u, state.a)
+
+
+# When did a sprung body turn back, and when did it pass its rest position?
+
+
+@kernel
+def _seen(model, state, step, i, on, tau):
+    """Coordinate i and its velocity at time tau of the step; against coordinate `on` if that is not -1."""
+    q, u = coordinate_within(model, state, step, i, tau)
+    if on >= 0:
+        there, speed = coordinate_within(model, state, step, on, tau)
+        return q - there, u - speed
+    return q, u
+
+
+@kernel
+def _value(model, state, step, spring, turn, tau):
+    i, on, rest = spring
+    q, u = _seen(model, state, step, i, on, tau)
+    return u if turn else q - rest
+
+
+@kernel
+def _root(model, state, step, spring, turn, end):
+    """Time in [0, end] at which the velocity (turn) or the distance from rest changes sign."""
+    f_low, f_high = _value(model, state, step, spring, turn, 0.0), _value(model, state, step, spring, turn, end)
+    if f_low == 0.0 or f_low * f_high > 0.0:
+        return 0.0
+    bracket = opened(0.0, f_low, end, f_high)
+    tau = next_time(bracket)
+    while is_open(bracket, tau, PASSAGE_RESOLUTION * (step.span.start + bracket.high)):
+        f = _value(model, state, step, spring, turn, tau)
+        bracket = narrowed(bracket, tau, f, f * bracket.f_high > 0.0)
+        if f == 0.0:
+            break
+        tau = next_time(bracket)
+    return bracket.low if abs(bracket.f_low) < abs(bracket.f_high) else bracket.high
+
+
+@kernel
+def sign(x):
+    """-1, 0 or 1."""
+    if x > 0.0:
+        return 1
+    return -1 if x < 0.0 else 0
+
+
+@kernel
+def keep_passages(model, state, step, end, record):
+    """Write down the turning points and rest passages of sprung bodies in the step's first `end` seconds.
+
+    The state's q and u are those at the end; `end` 0 means a jump of velocity at one instant.
+    """
+    now, n = state.clock.time, len(model.coordinates)
+    for spring in range(n + len(model.joints)):
+        if spring < n:
+            if model.coordinates[spring].watched == 0:
+                continue
+            i, on, rest = spring, -1, model.coordinates[spring].level
+        else:
+            joint = model.joints[spring - n]
+            if joint.watched == 0:
+                continue
+            i, on, rest = joint.coordinate, joint.on, joint.rest
+        side = sign(along(state.u, i, on))
+        if side != 0 and side != state.side_u[i]:
+            if state.side_u[i] != 0:
+                tau = _root(model, state, step, (i, on, rest), True, end) if end > 0.0 else 0.0
+                q = _seen(model, state, step, i, on, tau)[0] if end > 0.0 else along(state.q, i, on)
+                state.clock.time = now - end + tau
+                keep_event(state, record, EventKind.TURN, -1, model.coordinates[i].body, q)
+            state.side_u[i] = side
+        side = sign(along(state.q, i, on) - rest)
+        if side != 0 and side != state.side_q[i]:
+            if state.side_q[i] != 0 and end > 0.0:
+                tau = _root(model, state, step, (i, on, rest), False, end)
+                state.clock.time = now - end + tau
+                speed = _seen(model, state, step, i, on, tau)[1]
+                keep_event(state, record, EventKind.CROSS, -1, model.coordinates[i].body, speed)
+            state.side_q[i] = side
+        state.clock.time = now
+
+
+# Which rows does a coupled step need, so that the motion within it can be interpolated from them?
+#
+# Between rows the motion is taken for polynomials through q, u and a at both ends (see `Trajectory.sample`). Where these stray
+# from the step's continuous extension by more than the tolerance, rows are put between, as many as it takes: the error of
+# positions goes with the 6th power of the distance of rows, that of velocities with the 4th.
+
+MOST_ROWS = 64
+
+
+@kernel
+def _pieces(model, options, end, step):
+    """Into how many equal parts the step's first `end` seconds must be cut."""
+    n = len(model.coordinates)
+    most = 1.0
+    for i in range(n):
+        q0, u0, a0 = step.q[i], end * step.u[i], end * end * step.stages[0, n + i]
+        speed, rate = dense(step, n + i, end)
+        q1, u1, a1 = dense_value(step, i, end), end * speed, end * end * rate
+        q = 0.5 * (q0 + q1) + 0.15625 * (u0 - u1) + 0.015625 * (a0 + a1)
+        u = (0.5 * (u0 + u1) + 0.125 * (a0 - a1)) / end
+        middle = dense_value(step, n + i, 0.5 * end)
+        coordinate = model.coordinates[i]
+        strays = abs(q - dense_value(step, i, 0.5 * end)) / (options.tolerance * coordinate.scale)
+        off = abs(u - middle) / (options.tolerance * max(coordinate.scale * coordinate.rate, abs(middle)))
+        most = max(most, strays ** (1.0 / 6.0), off**0.25)
+    return int(min(math.ceil(most), MOST_ROWS))
+
+
+@kernel
+def keep_inner_rows(model, options, end, step, record):
+    """Append the rows needed within the first `end` seconds of the coupled step just made, but not the one at their end."""
+    if end <= 0.0 or not is_kept(record, step.span.start, end):
+        return
+    n = len(model.coordinates)
+    pieces = _pieces(model, options, end, step)
+    for piece in range(1, pieces):
+        tau = end * piece / pieces
+        if not is_kept(record, step.span.start + tau, 0.0):
+            continue
+        row = record.used.rows
+        record.rows[row, 0] = step.span.start + tau
+        for i in range(2 * n):
+            record.rows[row, 1 + i] = dense_value(step, i, tau)
+        for i in range(n):
+            record.rows[row, 1 + 2 * n + i] = dense(step, n + i, tau)[1]
+        record.used.rows = row + 1
+
+
+# Along which path do bodies move within a step, and how sharply can it bend?
+
+DEGREE = 7
+# The continuous extension is y0 + sum of dense[t] x^a (1 - x)^b, with these exponents (a, b).
+TERMS = ((1, 0), (1, 1), (2, 1), (2, 2), (3, 2), (3, 3), (4, 3))
+
+
+def _derivative(order: int) -> NDArray[np.float64]:
+    """Bernstein coefficients, by row, of that derivative of each term, by the definition of the basis."""
+    terms = np.array(
+        [
+            [math.comb(DEGREE - a - b, k - a) / math.comb(DEGREE, k) if k >= a else 0.0 for a, b in TERMS]
+            for k in range(DEGREE + 1)
+        ]
+    )
+    return np.asarray(math.perm(DEGREE, order) * np.diff(terms, n=order, axis=0))
+
+
+BEND, JERK = _derivative(2), _derivative(3)
+
+
+@kernel
+def bound_accelerations(step, n):
+    """Bounds of |q''| over the coupled step, for its n coordinates, into `step.bound`."""
+    h = step.span.length
+    for i in range(n):
+        step.bound[i] = _largest_coefficient(BEND, step.dense, i) / (h * h)
+
+
+@kernel
+def jerk_bound(model, state, step, i):
+    """A bound of |q'''| of coordinate i over the step."""
+    if state.awake[i] == 0:
+        return 0.0
+    if step.span.kind == FLIGHT:
+        return step.bound[i] * fastest_change(model.coordinates[i])
+    h = step.span.length
+    return _largest_coefficient(JERK, step.dense, i) / (h * h * h)
+
+
+@kernel
+def _largest_coefficient(derivative, dense, i):
+    """The largest Bernstein coefficient of that derivative of coordinate i, which no value of the polynomial exceeds."""
+    largest = 0.0
+    for row in range(len(derivative)):
+        total = 0.0
+        for term in range(DEGREE):
+            total += derivative[row, term] * dense[term, i]
+        largest = max(largest, abs(total))
+    return largest
+
+
+@kernel
+def acceleration_on_path(model, state, step, i, tau, path):
+    """q'' of coordinate i at time tau of the step, at which it must stand in `path`."""
+    if state.awake[i] == 0:
+        return 0.0
+    if step.span.kind == FLIGHT:
+        return flight_acceleration(model, state, i, path.q[i], path.u[i])
+    return dense_bend(step, i, tau)
+
+
+@hot_kernel
+def body_on_path(model, state, step, b, tau, path):
+    """Bring body b's coordinates (in `path.q`, `path.u`) and pose to time tau of the step; u is exactly q'."""
+    part = b
+    while part >= 0:  # the body, then its carrier
+        body = model.bodies[part]
+        part = body.carrier
+        if body.first < 0:
+            continue
+        for j in range(3 if body.motion == FREE else 1):
+            i = body.first + j
+            if state.awake[i] == 0:
+                path.q[i], path.u[i] = state.q[i], 0.0
+            elif step.span.kind == FLIGHT:
+                path.q[i], path.u[i] = flow(model.coordinates[i], state.grip[i], step.q[i], step.u[i], tau)
+            else:
+                path.q[i], path.u[i] = dense(step, i, tau)
+    place_body(model, b, path.q, path.u, path.pose)

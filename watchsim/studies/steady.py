@@ -1,0 +1,345 @@
+"""What does the watch settle to, without waiting until it has?
+
+The limit cycle is a fixed point of the return map (return_map.py), found by shooting (shooting.py) and closed over a whole turn
+of the wheel (polish.py). Where there is none, an ordinary run shows what happens instead (judge.py).
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import time
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from watchsim.analysis.timing import DAY
+from watchsim.analysis.verdict_kinds import STOPS, TICKS, UNSETTLED, VERDICTS
+from watchsim.scene.errors import Faults, SceneError
+from watchsim.scene.roles import is_driven, only_presses, roles
+from watchsim.scene.scene import Scene
+from watchsim.scene.values import key_lines
+from watchsim.simulation.state import State
+from watchsim.studies.all_cycles import Survey, Swings, judged, late_means, run_from, with_all_cycles
+from watchsim.studies.cycle import Cycle
+from watchsim.studies.return_map import (
+    FINER,
+    Fixed,
+    Lost,
+    Polished,
+    Return,
+    ReturnMap,
+    fixed_point,
+    glanced,
+    polished,
+    polished_over,
+    repeats,
+)
+from watchsim.studies.section import (
+    Loop,
+    NoSection,
+    Parts,
+    Section,
+    first_section,
+    parts_of,
+    section_at,
+    section_from,
+    why_no_section,
+    with_springs_held,
+)
+from watchsim.tolerances import COARSEST_TOLERANCE, FINEST_TOLERANCE
+
+# Does anything keep an oscillator going? If not, there is no limit cycle to ask for.
+
+WHAT = "nothing keeps an oscillator going here"
+WHY = "so there is no limit cycle to look for"
+INSTEAD = "Give the wheel of an escapement a torque, or simulate the scene with `watchsim run`"
+
+
+def nothing_swings(scene: Scene) -> SceneError | None:
+    """Where no body swings, or the only ones that do are lifted and let go by bodies that move as the scene says."""
+    oscillator = roles(scene).oscillator
+    if oscillator is None:
+        return _refused(scene, "no body swings on a spring or by gravity")
+    if only_presses(scene) and not is_driven(scene):
+        moved = [body.name for body in scene.bodies if body.prescribed is not None]
+        moves = "moves" if len(moved) == 1 else "move"
+        return _refused(scene, f"{oscillator} is sprung, {' and '.join(moved)} {moves} as the scene says, and no torque acts")
+    return None
+
+
+def nothing_lets_go(scene: Scene) -> SceneError | None:
+    """Where a driven wheel touches a sprung body that did not swing: a click holds it, and no escapement lets it go."""
+    found = roles(scene)
+    if found.wheel is None or not only_presses(scene):
+        return None
+    return _refused(scene, f"{found.wheel} is driven, {found.oscillator} is sprung and rests on it, and did not swing")
+
+
+def _refused(scene: Scene, seen: str) -> SceneError:
+    lines = key_lines(scene.path.read_text(encoding="utf-8-sig")) if scene.path and scene.path.is_file() else {}
+    faults = Faults(str(scene.path or "scene"), lines)
+    faults.add("torques" if scene.torques else "springs", f"{WHAT}: {seen}, {WHY}. {INSTEAD}")
+    return SceneError(faults.found)
+
+
+# What does the watch settle to, without waiting until it has?
+
+REST = 1e-9  # rad or m per scale: bodies that stand still come back so closely, or the section is moved on
+SECTIONS = 6  # of them at most
+AFTERWARDS = 24  # periods of the run that shows what happens where there is no cycle
+LONGEST = 120.0  # s, of a run that stands in for a cycle
+FEWEST = 40  # periods of it
+SETTLED = 1e-4  # of the amplitude: what such a run may still scatter and drift
+LOSSLESS = 1e-9  # of the amplitude, in one oscillation
+DIES = "its swing dies away within an oscillation"
+ASIDE = 0.01  # of the amplitude: beside an unstable cycle, to see where it is left for
+
+
+def steady(
+    scene: Scene | str | Path,
+    *,
+    tolerance: float | None = None,
+    amplitude: float | None = None,
+    brief: bool = False,
+    all_cycles: bool = False,
+) -> Cycle:
+    """The limit cycle that the scene's start leads to: amplitude, rate, beat error and stability, each with its error.
+
+    scene      a scene, or the file or folder that holds one
+    tolerance  relative error per step (default the scene's own)
+    amplitude  rad (m), where the search is to begin instead of at the first turning point of the scene's own start
+    brief      one oscillation on the cycle is enough: without errors, multipliers and a look at all teeth of the wheel
+    all_cycles  look at swings of all sizes for every cycle, stable or not, and say which of them each swing leads to
+
+    Where there is no cycle `found` is False, and `verdict` and `message` say what there is instead. ValueError for a bad
+    argument; SceneError where bodies overlap at the start, and where nothing keeps an oscillator going. A mainspring stays as
+    far wound as the scene says.
+    """
+    begun = time.perf_counter()
+    if not isinstance(scene, Scene):
+        from watchsim.scene.load import load
+
+        scene = load(scene)
+    tolerance = scene.tolerance if tolerance is None else float(tolerance)
+    if not FINEST_TOLERANCE <= tolerance <= COARSEST_TOLERANCE:
+        raise ValueError(f"the tolerance must lie between {FINEST_TOLERANCE:g} and {COARSEST_TOLERANCE:g}, not {tolerance}")
+    if amplitude is not None and not (amplitude > 0.0 and math.isfinite(amplitude)):
+        raise ValueError(f"the amplitude must be a positive number of rad (m), not {amplitude}")
+    if refused := nothing_swings(scene):
+        raise refused
+    loop = Loop(with_springs_held(scene), tolerance)
+    ready = time.perf_counter()
+    loop.warm_up()
+    warm = time.perf_counter()
+    cycle = _searched(loop, Search(amplitude, brief, all_cycles))
+    if not cycle.found and cycle.period_s is None and (refused := nothing_lets_go(scene)):
+        raise refused
+    wall = time.perf_counter() - begun - (warm - ready)
+    return dataclasses.replace(cycle, simulated_s=loop.simulated, cells_s=loop.finder.seconds, wall_s=wall)
+
+
+class Search(NamedTuple):
+    """What was asked for, as in `steady`."""
+
+    amplitude: float | None
+    brief: bool
+    all_cycles: bool
+
+
+def _searched(loop: Loop, search: Search) -> Cycle:
+    parts = parts_of(loop.scene, loop.compiled)
+    if parts is None:
+        return Cycle(False, None, "nothing in this scene swings on a spring or by gravity, so nothing repeats itself")
+    if why := why_no_section(loop.compiled, parts):
+        return _by_run(loop, parts, why)
+    state = loop.begin()
+    section = first_section(loop, parts, state)
+    if isinstance(section, NoSection):
+        if section.still or not is_driven(loop.scene):
+            if parts.wheel < 0:
+                return Cycle(False, None, DIES)
+            return _instead(loop, None, STOPS, section.time)
+        return _by_run(loop, parts, "at no turning point of the oscillator does everything else stand still")
+    if not is_driven(loop.scene):
+        return _alone(ReturnMap(loop, parts, section))
+    start = section.amplitude if search.amplitude is None else search.amplitude
+    oscillate, found = _fixed(loop, parts, section, start)
+    cycle = _shot(oscillate, found, search.brief)
+    if not search.all_cycles:
+        return cycle
+    known = start if isinstance(found, Lost) else found.amplitude
+    swings = Swings(oscillate)
+    return with_all_cycles(cycle, Survey(swings, known), swings)
+
+
+def _shot(oscillate: ReturnMap, found: Fixed | Lost, brief: bool) -> Cycle:
+    """What shooting has found, and how exactly it is known."""
+    loop, parts = oscillate.loop, oscillate.parts
+    finer = Loop(loop.scene, max(FINER * loop.tolerance, FINEST_TOLERANCE), like=loop)
+    if isinstance(found, Lost):
+        again = _after_several(oscillate, found.amplitude, finer) if found.trouble == UNSETTLED else None
+        return again or _lost(oscillate, found)
+    if brief:
+        return _told(loop, parts, glanced(oscillate, found))
+    exact = polished(oscillate, found, finer)
+    loop.simulated += finer.simulated
+    if isinstance(exact, Return):
+        return _lost(oscillate, Lost(found.amplitude, exact.trouble, False))
+    if exact.multiplier is None or not abs(exact.multiplier) < 1.0:
+        return _after_several(oscillate, (1.0 + ASIDE) * found.amplitude, finer) or _unstable(loop, parts, exact)
+    return _told(loop, parts, exact)
+
+
+def _after_several(oscillate: ReturnMap, amplitude: float, finer: Loop) -> Cycle | None:
+    """A stable cycle of several oscillations that the orbit from there runs to; None without one."""
+    found = repeats(oscillate, amplitude)
+    if found is None:
+        return None
+    loop, number = oscillate.loop, found[0]
+    exact = polished_over(oscillate, found[1], number, finer)
+    if isinstance(exact, Return) or exact.multiplier is None or not abs(exact.multiplier) < 1.0:
+        return None
+    told = _told(loop, oscillate.parts, exact)
+    if number == 1:
+        return told
+    each = tuple(math.degrees(one) for one in exact.means.each) if told.amplitude_deg is not None else ()
+    sizes = ", ".join(f"{one:.6g}°" for one in each)
+    message = f"it repeats itself only after {number} oscillations, which differ: {sizes or 'their sizes'} in turn"
+    return dataclasses.replace(told, message=message, amplitudes_deg=each)
+
+
+def _fixed(loop: Loop, parts: Parts, section: Section, amplitude: float) -> tuple[ReturnMap, Fixed | Lost]:
+    """The fixed point; the section moves on until what stands still at it comes back to its place."""
+    for _ in range(SECTIONS):
+        oscillate = ReturnMap(loop, parts, section)
+        found = fixed_point(oscillate, amplitude)
+        if isinstance(found, Lost) and found.trouble == UNSETTLED and section.touching:
+            oscillate, found = _elsewhere(oscillate, amplitude, found)
+        again = None if isinstance(found, Lost) else _moved_on(oscillate, found)
+        if again is None:
+            break
+        section, amplitude = again, found.amplitude
+    return oscillate, found
+
+
+def _elsewhere(oscillate: ReturnMap, amplitude: float, lost: Lost) -> tuple[ReturnMap, Fixed | Lost]:
+    """The fixed point where the parts rest otherwise than at the section that the search began with; else what was lost."""
+    swings = Swings(oscillate)
+    found = fixed_point(swings, amplitude)
+    there = None if isinstance(found, Lost) else swings.map_at(found.amplitude)
+    return (oscillate, lost) if there is None else (there, found)
+
+
+def _moved_on(oscillate: ReturnMap, found: Fixed) -> Section | None:
+    """A section an oscillation later where bodies at rest have not come back to their places; None where they have."""
+    got = oscillate(found.amplitude)
+    if got.state is None:
+        return None
+    parts, loop = oscillate.parts, oscillate.loop
+    away = np.abs(got.state.q - oscillate.section.state.q) / loop.compiled.model.coordinates.scale
+    away[parts.coordinate] = 0.0
+    if parts.wheel >= 0:
+        away[parts.wheel] = 0.0
+    if (away <= REST).all():
+        return None
+    return section_from(loop, parts, got.state) if oscillate.section.touching else section_at(loop, parts, got.state, got.time)
+
+
+def _told(loop: Loop, parts: Parts, exact: Polished) -> Cycle:
+    """A cycle in watchmakers' units."""
+    means = exact.means
+    return Cycle(
+        found=True,
+        verdict=TICKS if parts.wheel >= 0 else None,
+        amplitude_deg=_degrees(loop, parts, means.amplitude),
+        amplitude_deg_error=_degrees(loop, parts, exact.amplitude_error),
+        period_s=means.period,
+        period_s_error=exact.period_error,
+        rate_s_per_d=DAY * (parts.nominal / means.period - 1.0),
+        rate_s_per_d_error=_times(DAY * parts.nominal / means.period**2, exact.period_error),
+        beat_error_ms=1e3 * abs(means.uneven),
+        beat_error_ms_error=_times(1e3, exact.beat_error_error),
+        uneven_ms=1e3 * means.uneven,
+        multipliers=() if exact.multiplier is None else (exact.multiplier,),
+        multipliers_error=() if exact.multiplier_error is None else (exact.multiplier_error,),
+        oscillations=exact.per,
+        tooth_spread_deg=_degrees(loop, parts, means.spread),
+    )
+
+
+def _degrees(loop: Loop, parts: Parts, value: float | None) -> float | None:
+    """None for a body that slides."""
+    angular = loop.scene.bodies[parts.body].motion == "pivot"
+    return math.degrees(value) if angular and value is not None else None
+
+
+def _times(factor: float, value: float | None) -> float | None:
+    return None if value is None else factor * value
+
+
+def _lost(oscillate: ReturnMap, lost: Lost) -> Cycle:
+    """The orbit left the region where the mechanism works as it should: what happens there."""
+    loop, parts, section = oscillate.loop, oscillate.parts, oscillate.section
+    state = section.at(loop, parts, lost.amplitude)
+    if lost.trouble in VERDICTS and lost.trouble != UNSETTLED:
+        return _instead(loop, state, lost.trouble, AFTERWARDS * parts.period)
+    return _by_run(loop, parts, "the search for a limit cycle did not converge", state)
+
+
+def _instead(loop: Loop, state: State | None, suspicion: str, duration: float) -> Cycle:
+    found = judged(run_from(loop, state, duration), suspicion, since_start=state is None)
+    return Cycle(False, found.name, found.message)
+
+
+def _unstable(loop: Loop, parts: Parts, exact: Polished) -> Cycle:
+    """A cycle that the mechanism leaves at the slightest disturbance: what it does then."""
+    told = _told(loop, parts, exact)
+    multiplier = exact.multiplier or 0.0
+    how = "it swings too far and too little in turn" if multiplier < 0.0 else "it runs away from it"
+    message = f"there is a cycle, but an unstable one (multiplier {multiplier:.3g}): disturbed, {how}"
+    return dataclasses.replace(told, found=False, verdict=UNSETTLED, message=message)
+
+
+def _alone(oscillate: ReturnMap) -> Cycle:
+    """What swings without a drive."""
+    start = oscillate.section.amplitude
+    got = oscillate(start)
+    if got.trouble:
+        return Cycle(False, None, f"nothing drives it, and {DIES}")
+    ratio = got.amplitude / start
+    if abs(1.0 - ratio) <= LOSSLESS:
+        message = "nothing drives it and nothing brakes it: it keeps any amplitude that it is given"
+    elif ratio > 1.0:
+        message = f"nothing drives it, and yet its swing grows by {100.0 * (ratio - 1.0):.3g} % in an oscillation"
+    else:
+        quality = math.pi / -math.log(ratio)
+        lost = f"{100.0 * (1.0 - ratio):.3g} % of its swing in an oscillation of {got.time:.9g} s"
+        message = f"nothing drives it: it loses {lost} (Q = {quality:.4g}), and comes to rest"
+    return Cycle(False, None, message, multipliers=(ratio,))
+
+
+def _by_run(loop: Loop, parts: Parts, why: str, state: State | None = None) -> Cycle:
+    """What an ordinary run settles to, from the scene's start or from that state."""
+    duration = min(max(loop.scene.duration, FEWEST * parts.period), max(LONGEST, FEWEST * parts.period))
+    run = run_from(loop, state, duration)
+    seen = judged(run, since_start=state is None)
+    means = late_means(run)
+    message = f"{why}; this is the end of a run of {run.simulated:.4g} s"
+    if means.amplitude_deg is None or seen.name not in (TICKS, UNSETTLED, None):
+        return Cycle(False, seen.name, seen.message or message)
+    settled = (means.amplitude_deg_error or math.inf) <= SETTLED * means.amplitude_deg
+    return Cycle(
+        found=settled,
+        verdict=(TICKS if parts.wheel >= 0 else None) if settled else UNSETTLED,
+        message=message if settled else f"{message}, which has not settled",
+        amplitude_deg=means.amplitude_deg,
+        amplitude_deg_error=means.amplitude_deg_error,
+        period_s=means.period_s,
+        period_s_error=means.period_s_error,
+        rate_s_per_d=means.rate_s_per_d,
+        rate_s_per_d_error=means.rate_s_per_d_error,
+        beat_error_ms=means.beat_error_ms,
+        beat_error_ms_error=means.beat_error_ms_error,
+    )

@@ -1,0 +1,186 @@
+"""How do amplitude, rate and beat error depend on parameters of the scene?"""
+
+from __future__ import annotations
+
+import itertools
+import os
+import time
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from watchsim.displays import notebook_html
+from watchsim.scene.scene import Scene
+from watchsim.simulation.runner import held_interrupts
+from watchsim.studies.axes import Axis, Value, axes_from_values
+from watchsim.studies.point import USUAL, Output, Question, Row, outputs_named
+from watchsim.studies.workers import Executor, Journal, Study, chosen, scene_digest
+
+Progress = Callable[[float, float], None]  # points done, of so many
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """The finished rows of a study, in the order of its points: the last key runs fastest.
+
+    Each row holds every key (SI), every output with its error, `verdict` and `message`; `whole` is False where points are
+    missing because it was interrupted.
+    """
+
+    title: str
+    axes: tuple[Axis, ...]
+    outputs: tuple[Output, ...]
+    rows: tuple[Row, ...]
+    whole: bool
+    wall_s: float
+
+    def __repr__(self) -> str:
+        keys = ", ".join(axis.key for axis in self.axes)
+        told = ", ".join(one.column for one in self.outputs)
+        return f"<Sweep of {self.title!r}: {len(self.rows)} points over {keys}; {told}{'' if self.whole else '; interrupted'}>"
+
+    def _repr_html_(self) -> str:
+        return notebook_html(self)
+
+    def column(self, name: str) -> list[Any]:
+        """The values of a key, an output ("amplitude") or a column ("amplitude_deg_error") in all rows; else KeyError."""
+        names = {one.name: one.column for one in self.outputs}
+        return [row[names.get(name, name)] for row in self.rows]
+
+    def numbers(self) -> dict[str, Any]:
+        """What `sweep --json` prints: keys (values in SI), outputs (columns), rows, wall_s."""
+        return {
+            "keys": {axis.key: list(axis.values) for axis in self.axes},
+            "outputs": [one.column for one in self.outputs],
+            "rows": [dict(row) for row in self.rows],
+            "wall_s": self.wall_s,
+        }
+
+
+def sweep(  # noqa: PLR0913 - options, by name
+    scene: Scene | str | Path,
+    values: Mapping[str, Sequence[Any]],
+    outputs: Iterable[str] = USUAL,
+    *,
+    steady: bool = True,
+    duration: float | str | None = None,
+    tolerance: float | None = None,
+    workers: int = 1,
+    scheduler: str | None = None,
+    folder: str | Path | None = None,
+    resume: bool = False,
+    progress: Progress | None = None,
+) -> Sweep:
+    """Every combination of the values: the limit cycle of each, or with `steady` off the end of a run of `duration`.
+
+    values     dotted path of the scene -> SI numbers, or texts with units: {"contacts.0.friction": [0.1, 0.12, 0.15]}
+    outputs    of amplitude, rate, beat_error, period, multiplier
+    duration   seconds, or a text with its unit (default the scene's)
+    workers    processes (more than one only where this is called under `if __name__ == "__main__":`); `scheduler` the
+               address of a dask.distributed scheduler instead
+    folder     where finished rows are kept one by one (rows.jsonl); with `resume` those that are there already are taken up
+    progress   called as progress(points done, points)
+
+    Every point begins from the scene's own start, so that rows do not depend on their order or on who computed them. A point
+    that fails has its reason in `message`. KeyboardInterrupt ends the sweep and keeps the finished rows. SceneError for keys or
+    values that do not fit, ValueError for other arguments.
+    """
+    if not isinstance(scene, Scene):
+        from watchsim.scene.load import load
+
+        scene = load(scene)
+    axes, asked = axes_from_values(scene, values), outputs_named(outputs)
+    question = Question(scene, steady, _seconds(duration), tolerance)
+    return swept(question, axes, asked, chosen(workers, scheduler), folder=folder, resume=resume, progress=progress)
+
+
+def swept(
+    question: Question,
+    axes: Sequence[Axis],
+    outputs: tuple[Output, ...],
+    executor: Executor,
+    *,
+    folder: str | Path | None = None,
+    resume: bool = False,
+    progress: Progress | None = None,
+) -> Sweep:
+    """The same for what has been checked."""
+    begun = time.perf_counter()
+    points = [dict(zip((axis.key for axis in axes), values, strict=True)) for values in _grid(axes)]
+    if not axes:
+        raise ValueError("a sweep needs at least one key with its values")
+    rows = _rows(question, axes, points, executor, folder, resume, progress)
+    columns = [name for one in outputs for name in ((one.column, f"{one.column}_error") if one.has_error else (one.column,))]
+    told = tuple(
+        {**points[number], **{name: rows[number].get(name) for name in (*columns, "verdict", "message")}}
+        for number in sorted(rows)
+    )
+    return Sweep(question.scene.title, tuple(axes), outputs, told, len(rows) == len(points), time.perf_counter() - begun)
+
+
+def _grid(axes: Sequence[Axis]) -> Iterable[tuple[Value, ...]]:
+    return itertools.product(*(axis.values for axis in axes))
+
+
+def _rows(
+    question: Question,
+    axes: Sequence[Axis],
+    points: list[dict[str, Value]],
+    executor: Executor,
+    folder: str | Path | None,
+    resume: bool,
+    progress: Progress | None,
+) -> dict[int, Row]:
+    if folder is None:
+        rows: dict[int, Row] = {}
+        computed(question, list(enumerate(points)), executor, rows.__setitem__, progress)
+        return rows
+    with Journal(Path(folder), study_of(question, {axis.key: list(axis.values) for axis in axes}), resume) as journal:
+        left = [(number, point) for number, point in enumerate(points) if number not in journal.rows]
+        computed(question, left, executor, journal.add, progress)
+        return journal.rows
+
+
+def computed(
+    question: Question,
+    points: Sequence[tuple[int, Mapping[str, Value]]],
+    executor: Executor,
+    keep: Callable[[int, Row], None],
+    progress: Progress | None = None,
+) -> None:
+    """Have the points answered, and keep every row as it comes."""
+    if not points:
+        return
+    with held_interrupts() as interrupted:
+        for done, (number, row) in enumerate(executor.answers(question, points, interrupted), start=1):
+            keep(number, row)
+            if progress is not None:
+                progress(float(done), float(len(points)))
+
+
+def study_of(question: Question, keys: Mapping[str, list[Value]]) -> Study:
+    """What decides the rows, as a resumed study must find it again."""
+    how = "by shooting" if question.by_shooting else f"by runs of {question.duration or question.scene.duration:g} s"
+    return {
+        "scene": scene_digest(question.scene),
+        "keys": dict(keys),
+        "computed": how,
+        "tolerance": question.tolerance or question.scene.tolerance,
+    }
+
+
+def processors() -> int:
+    """How many this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _seconds(duration: float | str | None) -> float | None:
+    if not isinstance(duration, str):
+        return duration
+    from watchsim.units import TIME, UnitError, parse
+
+    try:
+        return parse(duration, TIME)
+    except UnitError as error:
+        raise ValueError(f"duration: {error}") from error
