@@ -32,7 +32,7 @@ PATIENCE = 120.0  # s to wait for the machine code of the first worker; after th
 # Matrices here are small: threads of the linear algebra would only wait for each other, at the cost of the other worker.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 COMPILED = pytest.StashKey[bool]()
-SHARED = ("contact", "drawing", "drawing/damaged", "dynamics", "scene", "simulation")
+SHARED = ("contact", "drawing", "dynamics", "scene", "simulation")
 sys.path[:0] = [str(HERE), *(str(HERE / name) for name in SHARED)]
 
 # A test says whether the program is right, not whether the machine has something else to do.

@@ -23,7 +23,7 @@ from pathlib import Path
 from typing import Any
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "drawing"), str(ROOT / "tests" / "drawing" / "damaged")]
+sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "drawing")]
 MEMORY = 1 << 30  # bytes
 SECONDS = 10.0  # of processor time: other work on the machine shall not decide
 PATIENCE = 20.0  # times that, on the clock, before a worker counts as hanging
@@ -137,7 +137,7 @@ def page(logs: list[Path]) -> str:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--format", default="dxf", help="dxf or svg: the module mutate_FORMAT of tests/drawing/damaged")
+    parser.add_argument("--format", default="dxf", help="dxf or svg: the module mutate_FORMAT of tests/drawing")
     parser.add_argument("--count", type=int, default=20_000)
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--only", type=int, help="write this one file and judge it")

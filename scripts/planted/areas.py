@@ -13,10 +13,10 @@ AREAS = {  # name -> (files, tests)
         (
             "tests/geometry",
             RECORDS,
-            "tests/drawing/chaining/test_chain.py",
-            "tests/drawing/curves/test_splines.py",
+            "tests/drawing/test_chaining.py",
+            "tests/drawing/test_ellipses_and_splines.py",
             "tests/drawing/test_profile.py",
-            "tests/render/test_glb_motion.py",
+            "tests/render/test_solids_for_others.py",
         ),
     ),
     "scene": (
@@ -32,7 +32,7 @@ AREAS = {  # name -> (files, tests)
     ),
     "analysis": (
         ("analysis/**/*.py", "results/*.py", "verification/**/*.py"),
-        ("tests/analysis", "tests/results", "tests/verification", "tests/render/figures/test_tape_plot.py", RECORDS),
+        ("tests/analysis", "tests/results", "tests/verification", "tests/render/test_curves_and_colours.py", RECORDS),
     ),
     "pictures": (
         (

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from render.fake_runs import slide_run, watch_run
 
-from watchsim.render import keyframes as keys
+from watchsim.render.encoder import check_path
 from watchsim.render.keyframes import keyframes
 from watchsim.render.marks import (
     changing_speed_text,
@@ -20,10 +23,11 @@ from watchsim.render.marks import (
     goes_round,
     reading,
     scale_bar,
+    signed,
     speed_text,
     turn_text,
 )
-from watchsim.render.movie import busy
+from watchsim.render.movie import MOST_FRAMES, adaptive, busy, even
 from watchsim.render.rows import kept_rows
 from watchsim.render.view import dense, poses, sampled, stretch, swept
 from watchsim.scene.scene import Body
@@ -218,16 +222,6 @@ def test_speeds_that_are_none(speed: float) -> None:
         keyframes(watch_run(), None, speed)
 
 
-def test_instants_too_close_to_tell_apart() -> None:
-    """Of those within the same microsecond of the screen the first; both ends of the window always."""
-    t = np.array([0.1, 0.2, 0.2 + 4e-7, 0.2 + 2.6e-6, 0.3])
-    run: Any = SimpleNamespace(t=t)
-    found = keys._instants(run, (0.1, 0.3), 1e-6)
-    assert found[0] == 0.1 and found[-1] == 0.3 and np.diff(found).min() > 1e-7
-    near = found[(found > 0.2 - 1e-9) & (found < 0.2 + 1e-5)]
-    assert len(near) == 2 and near[1] == pytest.approx(0.2 + 2.6e-6, abs=1e-12)
-
-
 def lively(
     times: list[float], found: list[tuple[str, float, float]] | None = None, window: tuple[float, float] = (0.0, 10.0)
 ) -> Any:
@@ -257,3 +251,174 @@ def test_stretches_of_phases() -> None:
     assert lively([9.0], [*phases, ("draw", 7.19, 7.2)]) == [(0.9, 2.6), (5.9, 7.3)]
     assert lively([9.0], [*phases, ("draw", 7.31, 7.32)]) == [(0.9, 2.6), (5.9, 6.2), (7.21, 7.42)]
     assert lively([9.0], phases[2:3]) == [(8.96, 9.04)] and lively([], phases, (2.4, 6.05)) == [(2.4, 2.6), (5.9, 6.05)]
+
+
+def test_where_a_movie_can_be_written(tmp_path: Path) -> None:
+    (tmp_path / "folder.mp4").mkdir()
+    assert check_path(str(tmp_path / "a.Mp4")) == tmp_path / "a.Mp4" and check_path(tmp_path / "b.gif") == tmp_path / "b.gif"
+    for name, error in (("a.avi", ValueError), ("no/a.mp4", FileNotFoundError), ("folder.mp4", IsADirectoryError)):
+        with pytest.raises(error):
+            check_path(tmp_path / name)
+
+
+BEAT = ((0.1, 0.106), (0.225, 0.231), (0.35, 0.356))
+
+
+def test_what_happens_gets_most_of_the_frames():
+    plan = adaptive((0.0, 0.5), BEAT, 10.0, 60.0)
+    shown = sum(np.count_nonzero((plan.times >= start) & (plan.times <= end)) for start, end in BEAT)
+    assert len(plan.times) == 601 and 0.65 < shown / 601 < 0.85
+    assert plan.times[0] == 0.0 and plan.times[-1] == pytest.approx(0.5, abs=1e-12)
+
+
+def test_the_speed_told_is_that_of_the_film():
+    """Against central differences of the instants, which know nothing of speeds: off by the square of the step."""
+    off = []
+    for fps in (1200.0, 2400.0):
+        plan = adaptive((0.0, 0.5), BEAT, 10.0, fps)
+        measured = (plan.times[2:] - plan.times[:-2]) * fps / 2.0
+        off.append(np.quantile(np.abs(measured / plan.speeds[1:-1] - 1.0), 0.99))
+    assert off[0] < 1e-3 and off[1] == pytest.approx(off[0] / 4.0, rel=0.2)
+
+
+@given(
+    cuts=st.lists(st.integers(0, 10**9).map(lambda n: n / 10**9), min_size=2, max_size=12, unique=True).filter(
+        lambda cuts: len(cuts) % 2 == 0
+    ),
+    length=st.floats(0.2, 60.0),
+)
+def test_any_stretches_give_a_film_of_the_asked_length_that_never_turns_back(cuts, length):
+    edges = sorted(cuts)
+    plan = adaptive((0.0, 1.0), list(zip(edges[::2], edges[1::2], strict=True)), length, 30.0)
+    assert len(plan.times) == max(2, int(np.floor(length * 30.0 + 1e-6)) + 1)
+    assert plan.times[0] == pytest.approx(0.0, abs=1e-9) and plan.times[-1] == pytest.approx(1.0, abs=1e-9)
+    assert np.all(np.diff(plan.times) >= 0.0) and np.all(plan.speeds > 0.0) and np.all(np.isfinite(plan.speeds))
+
+
+def test_without_anything_to_tell_apart_the_speed_is_even():
+    for spans in ((), ((0.0, 1.0),)):
+        plan = adaptive((0.0, 1.0), spans, 5.0, 20.0)
+        assert np.allclose(plan.times, np.linspace(0.0, 1.0, 101)) and np.allclose(plan.speeds, 0.2)
+
+
+@pytest.mark.parametrize("length", [0.0, -1.0, np.nan, np.inf, 1e9])
+def test_a_length_without_sense_is_refused(length):
+    with pytest.raises(ValueError, match="length"):
+        adaptive((0.0, 1.0), (), length, 60.0)
+
+
+def test_even_frames_lie_evenly_and_are_limited():
+    plan = even((1.0, 2.0), 0.5, 10.0)
+    assert np.allclose(np.diff(plan.times), 0.05) and np.all(plan.speeds == 0.5)
+    with pytest.raises(ValueError, match="frames"):
+        even((0.0, 2.0 * MOST_FRAMES), 1.0, 60.0)
+
+
+@pytest.mark.parametrize(
+    ("speed", "text"),
+    [
+        (1.0, "true speed"),
+        (1 / 20, "1/20 of true speed"),
+        (0.05, "1/20 of true speed"),
+        (2 / 3, "2/3 of true speed"),
+        (0.123456, "0.1235 of true speed"),
+        (1e-7, "1e-07 of true speed"),
+        (2.0, "2 × true speed"),
+        (1.2, "1.2 × true speed"),
+        (1.0625, "1.062 × true speed"),
+        (9 / 11, "9/11 of true speed"),
+        (10 / 11, "0.9091 of true speed"),
+    ],
+)
+def test_speed(speed, text):
+    assert speed_text(speed) == text
+
+
+def test_time_in_seconds_or_after_the_start():
+    assert clock((0.0, 10.0)).text(1.2345, 1 / 60) == "1.23 s"
+    assert clock((19.4, 19.75)).text(19.4125, 1 / 1200) == "19.4 s + 12.5 ms"
+    assert clock((3.40000046, 3.6)).label == "time after 3.4 s (ms)"
+    assert clock((3.40000046, 3.6)).text(3.4125, 1 / 1200) == "3.4 s + 12.5 ms"
+    assert clock((0.0, 0.3)).text(0.0125, 1 / 1200) == "12.5 ms"
+
+
+def test_numbers():
+    assert signed(-0.04, 1) == "0.0"
+    assert signed(-1.25, 2) == "−1.25"
+    assert [decimals_for(step) for step in (20.0, 1.0, 0.5, 0.01, 0.0)] == [0, 0, 1, 2, 3]
+
+
+@pytest.mark.parametrize(
+    ("room", "bar"), [(0.0016, (1e-3, "1 mm")), (0.0004, (2e-4, "0.2 mm")), (0.05, (0.05, "50 mm")), (3.1, (2.0, "2 m"))]
+)
+def test_scale_bar_is_round(room, bar):
+    length, name = scale_bar(room)
+    assert (length, name) == (pytest.approx(bar[0]), bar[1])
+
+
+def test_poses_in_words():
+    run = watch_run()
+    balance = run.scene.body("balance")
+    tell, ends = reading(balance, sampled(run, balance, (0.0, 2.0)))
+    assert tell(np.array([0.0, 0.0, np.radians(-123.42)])) == "−123.4°"
+    assert ends == ("−286.5°", "286.5°")
+    lever = run.scene.body("lever")
+    tell, _ = reading(lever, sampled(run, lever, (0.0, 0.9)))
+    assert tell(np.array([0.0, 3e-3, np.radians(5.126)])) == "5.13°"
+    slider = slide_run()
+    body = slider.scene.body("slider")
+    tell, _ = reading(body, sampled(slider, body, (0.0, 1.0)))
+    assert tell(poses(slider, np.array([0.3]))["slider"][0]) == f"{2 * np.sin(3.0):.2f} mm"
+
+
+@pytest.mark.parametrize(
+    ("degrees", "text"),
+    [
+        (0.0, ""),
+        (360.0, ""),
+        (-90.0, "picture turned by 90° clockwise"),
+        (20.0, "picture turned by 20° counter-clockwise"),
+        (270.0, "picture turned by 90° clockwise"),
+        (180.0, "picture turned by 180°"),
+        (-180.0, "picture turned by 180°"),
+    ],
+)
+def test_a_turned_picture_says_so(degrees, text):
+    assert turn_text(math.radians(degrees)) == text
+
+
+def test_room_for_a_slider_is_that_of_its_whole_travel():
+    """2 mm · sin(10 t) along its axis: the texts at both ends say how much room the read-out needs."""
+    run = slide_run()
+    slider = run.scene.body("slider")
+    tell, ends = reading(slider, sampled(run, slider, (0.0, 1.0)))
+    frames = poses(run, np.array([0.05]))["slider"]
+    assert float(tell(frames[0]).split()[0]) == pytest.approx(2.0 * math.sin(0.5), abs=6e-3)
+    assert [float(text.replace("−", "-").split()[0]) for text in ends] == pytest.approx([-2.0, 2.0], abs=6e-3)
+    assert [text.split()[1] for text in ends] == ["mm", "mm"]
+
+
+@pytest.mark.parametrize(
+    ("speed", "text"),
+    [
+        (1.004, "true speed"),
+        (0.996, "true speed"),
+        (0.7, "0.7 × true speed"),
+        (0.5, "1/2 of true speed"),
+        (1 / 43.2, "1/43 of true speed"),
+        (1 / 432.0, "1/430 of true speed"),
+        (2.46, "2.5 × true speed"),
+    ],
+)
+def test_a_speed_that_changes_has_two_digits(speed: float, text: str) -> None:
+    assert changing_speed_text(speed) == text
+
+
+@pytest.mark.parametrize("exponent", range(-6, 1))
+@pytest.mark.parametrize("step", [1, 2, 5])
+def test_a_scale_bar_as_wide_as_its_room_fits(step: int, exponent: int) -> None:
+    """To the last digit; with a hair less room it is the next smaller one."""
+    length = step * 10.0**exponent
+    smaller = {1: 0.5, 2: 0.5, 5: 0.4}[step]
+    assert scale_bar(length)[0] == pytest.approx(length, rel=1e-12)
+    assert scale_bar(length * (1.0 - 1e-6))[0] == pytest.approx(smaller * length, rel=1e-12, abs=0.0)
