@@ -20,7 +20,7 @@ from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.scene.roles import loads
 from watchsim.scene.scene import STATISTICS, Gear, Scene
 from watchsim.scene.trains import Ride, rides, ungeared
-from watchsim.simulation.state import EVENT_DRIVEN
+from watchsim.simulation import EVENT_DRIVEN
 from watchsim.simulation.trajectory import Array as Array_of_trajectory
 from watchsim.simulation.trajectory import Trajectory
 

@@ -17,7 +17,7 @@ from watchsim.analysis.timing import Beats
 from watchsim.analysis.verdict_kinds import BESIDE
 from watchsim.mechanism.compile import scene_size
 from watchsim.scene.roles import keeps_time
-from watchsim.simulation.state import MOREAU
+from watchsim.simulation import MOREAU
 from watchsim.simulation.trajectory import Trajectory
 from watchsim.units import metric
 

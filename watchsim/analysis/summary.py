@@ -28,9 +28,10 @@ from watchsim.results.tables import plain
 from watchsim.scene.keys import ALIKE
 from watchsim.scene.roles import keeps_time, roles, swings
 from watchsim.scene.scene import Expectation
+from watchsim.simulation import MOREAU
 from watchsim.simulation.runner import Progress
 from watchsim.simulation.simulate import simulate
-from watchsim.simulation.state import MOREAU, EventKind, Stop
+from watchsim.simulation.state import EventKind, Stop
 from watchsim.simulation.trajectory import Trajectory, frames, speeds
 from watchsim.storage.columns import LongText
 from watchsim.units import known_unit

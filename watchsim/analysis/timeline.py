@@ -16,7 +16,7 @@ from watchsim.analysis.timing import Beats, beats, between, contact_columns, nom
 from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.scene.roles import Roles, drive_direction, with_anchor
 from watchsim.scene.scene import STATISTICS
-from watchsim.simulation.state import EVENT_DRIVEN
+from watchsim.simulation import EVENT_DRIVEN
 from watchsim.simulation.trajectory import Array, Trajectory
 from watchsim.storage.columns import let_go
 

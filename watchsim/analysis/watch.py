@@ -30,8 +30,9 @@ from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.scene.roles import drive_direction, keeps_time, oscillators, partners, roles
 from watchsim.scene.scene import STATISTICS, Scene
 from watchsim.scene.trains import goes_with
+from watchsim.simulation import EVENT_DRIVEN
 from watchsim.simulation.recording import Pair
-from watchsim.simulation.state import EVENT_DRIVEN, EventKind
+from watchsim.simulation.state import EventKind
 from watchsim.simulation.trajectory import Array, Trajectory
 from watchsim.storage.columns import blocks
 

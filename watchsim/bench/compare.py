@@ -19,9 +19,10 @@ from watchsim.mechanism.compile import compile_scene
 from watchsim.scene.load import load
 from watchsim.scene.outlines import cached_drawing
 from watchsim.scene.scene import Recording
+from watchsim.simulation import EVENT_DRIVEN, MOREAU
 from watchsim.simulation.runner import Run, trajectory_of
 from watchsim.simulation.simulate import MoreauRun, simulate
-from watchsim.simulation.state import EVENT_DRIVEN, MOREAU, Stop
+from watchsim.simulation.state import Stop
 from watchsim.simulation.trajectory import Trajectory
 from watchsim.verification.checks import incline_state
 

@@ -25,6 +25,7 @@ from watchsim.dynamics.lcp import LcpOutcome, Level, lcp_work, lemke_checked
 from watchsim.mechanism.compile import compile_scene
 from watchsim.model import CellsRef, ModelRef
 from watchsim.scene.scene import Recording, Scene
+from watchsim.simulation import EVENT_DRIVEN
 from watchsim.simulation.closed_contacts import gather, refresh
 from watchsim.simulation.coupled_motion import engage, island_of, label_islands, motion, place_contacts, sort_by_island
 from watchsim.simulation.event_loop import EVENTS_PER_CONTACT, ROWS_PER_STEP, advance
@@ -34,17 +35,7 @@ from watchsim.simulation.modes import decide, set_rate_zeros
 from watchsim.simulation.options import OptionsRef
 from watchsim.simulation.runner import Run, trajectory_of
 from watchsim.simulation.scratch import Record, RecordRef, Until, new_record, new_until, scratch_by_reference
-from watchsim.simulation.state import (
-    COUNT_NAMES,
-    EVENT_DRIVEN,
-    State,
-    StateRef,
-    Stop,
-    arrays_of,
-    copy_of_state,
-    room_for,
-    write_state,
-)
+from watchsim.simulation.state import COUNT_NAMES, State, StateRef, Stop, arrays_of, copy_of_state, room_for, write_state
 from watchsim.simulation.trajectory import Trajectory
 
 # Which pieces of a run's work are done again and again, to time one of them?

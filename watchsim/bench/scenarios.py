@@ -17,8 +17,9 @@ from watchsim.bench.engines import MODULES, Setup
 from watchsim.paths import profiles_dir
 from watchsim.scene.load import load
 from watchsim.scene.scene import Scene
+from watchsim.simulation import EVENT_DRIVEN, MOREAU
 from watchsim.simulation.recording import half_swings, since_two_before
-from watchsim.simulation.state import EVENT_DRIVEN, EVENT_DTYPE, MOREAU, EventKind
+from watchsim.simulation.state import EVENT_DTYPE, EventKind
 from watchsim.verification.checks import Incline
 
 # How far and how fast does a body swing whose place is known at evenly spaced times only?

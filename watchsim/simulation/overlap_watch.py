@@ -23,8 +23,8 @@ from watchsim.mechanism.overlap import chord_points, corner_depth, face_depth, m
 from watchsim.model import Records, records
 from watchsim.scene.forces import Side
 from watchsim.scene.scene import WHOLE_RUN, Scene, Window
+from watchsim.simulation import MOREAU
 from watchsim.simulation.overlap_sieve import PAIR, STRETCH, STRIDE, chosen_moves, instants_within, longest_moves, sieve
-from watchsim.simulation.state import MOREAU
 from watchsim.simulation.trajectory import frames
 from watchsim.tolerances import OVERLAP_RESOLUTION, STEPPED_OVERLAP
 

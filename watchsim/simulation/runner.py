@@ -27,6 +27,7 @@ from watchsim.mechanism.compile import Compiled
 from watchsim.model import words_of
 from watchsim.scene.roles import frequency
 from watchsim.scene.scene import Recording, Scene
+from watchsim.simulation import EVENT_DRIVEN
 from watchsim.simulation.event_loop import EVENTS_PER_CONTACT, ROWS_PER_STEP, advance
 from watchsim.simulation.options import Options, natural_step, options_for
 from watchsim.simulation.overlap_watch import OverlapWatch
@@ -47,7 +48,7 @@ from watchsim.simulation.saved_state import SavedState, save_state
 from watchsim.simulation.scratch import Until, new_record, new_scratch, new_until
 from watchsim.simulation.start import clear_start
 from watchsim.simulation.start import warm_up as warm_up_start
-from watchsim.simulation.state import COUNT_NAMES, EVENT_DRIVEN, EVENT_DTYPE, State, Stop, arrays_of, new_state, room_for
+from watchsim.simulation.state import COUNT_NAMES, EVENT_DTYPE, State, Stop, arrays_of, new_state, room_for
 from watchsim.simulation.trajectory import Trajectory, events_of_scene, rows_of_scene
 from watchsim.tolerances import FIRST_STEP
 
