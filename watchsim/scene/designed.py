@@ -173,14 +173,17 @@ def with_design(written: Written, faults: Faults) -> tuple[dict[str, Any], Made]
 
 
 def designed(of: object, faults: Faults | None = None) -> Design:
-    """The design of that name; SceneError where there is none."""
-    if isinstance(of, str) and of in registry.NAMES:
-        return registry.design(of)
-    all_known = f"Known: {', '.join(registry.NAMES)}"
-    if of is None:
+    """The design of that name; SceneError where there is none, or where that of another package does not load."""
+    all_known = f"Known: {', '.join(registry.names())}"
+    if isinstance(of, str) and of in registry.names():
+        try:
+            return registry.design(of)
+        except registry.BrokenDesign as error:
+            said = str(error)
+    elif of is None:
         said = f"missing. {all_known}"
     else:
-        hint = nearest(str(of), registry.NAMES)
+        hint = nearest(str(of), registry.names())
         said = f"there is no such design. {hint if hint.startswith('Did') else all_known}"
     if faults is None:
         raise SceneError([Fault(str(of), said, place="design")])
