@@ -35,11 +35,7 @@ class Affine(NamedTuple):
     def direction(self, v: Vector) -> Vector:
         """The image of a difference of points."""
         (x, y, z), a, b, c = v, self.ax, self.ay, self.az
-        return (
-            x * a[0] + y * b[0] + z * c[0],
-            x * a[1] + y * b[1] + z * c[1],
-            x * a[2] + y * b[2] + z * c[2],
-        )
+        return (x * a[0] + y * b[0] + z * c[0], x * a[1] + y * b[1] + z * c[1], x * a[2] + y * b[2] + z * c[2])
 
     def point(self, p: Vector) -> Vector:
         x, y, z = self.direction(p)

@@ -110,13 +110,7 @@ def moved(edge: Edge, angle: float, shift: Point) -> Edge:
             c * edge.x1 - s * edge.y1 + dx,
             s * edge.x1 + c * edge.y1 + dy,
         )
-    return Arc(
-        c * edge.x - s * edge.y + dx,
-        s * edge.x + c * edge.y + dy,
-        edge.radius,
-        edge.start_angle + angle,
-        edge.sweep,
-    )
+    return Arc(c * edge.x - s * edge.y + dx, s * edge.x + c * edge.y + dy, edge.radius, edge.start_angle + angle, edge.sweep)
 
 
 def reflected(edge: Edge, foot: Point, direction: Point) -> Edge:
