@@ -499,8 +499,6 @@ def slit_from(first: int, tip: int, nodes: Nodes, doubled: Container[int], bridg
     return []
 
 
-# Which outlines nearly coincide?
-
 NEAR = 1e-6  # m: no part has a wall that thin
 SMALL = 0.05  # of an outline's size; for tiny ones that is less
 PROBES = (0.0, 0.5)  # of each edge

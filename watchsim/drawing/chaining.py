@@ -87,8 +87,6 @@ def depths(loops: Sequence[Loop], size: NDArray[np.float64]) -> list[int] | None
     return depth
 
 
-# Which edges form loops?
-
 NOTED = 10.0  # times the snap: gaps up to that are closed, but said
 
 

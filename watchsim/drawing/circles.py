@@ -190,8 +190,6 @@ def facet_finding(loop: Loop, off: list[Row]) -> Finding:
     return Finding("facets", "warning", message, fix, loop.layer, 1e3 * x, 1e3 * y)
 
 
-# How does a bore that was drawn on a layer of its own lie to the outlines of a plate?
-
 DEEPER = 4.0  # than what crosses without being a crossing: a point that far inside is inside
 
 

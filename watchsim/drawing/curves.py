@@ -338,8 +338,6 @@ def axis_cuts(conic: Conic) -> tuple[float, list[float]]:
     return first, [*cuts, stop]
 
 
-# Which arcs follow the curves of a drawing?
-
 AT_ONCE = 4096  # curves: then it is looked whether they become too many pieces
 
 

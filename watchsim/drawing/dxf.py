@@ -305,8 +305,6 @@ def _ignored(kind: str, count: int) -> Finding:
     return Finding("ignored", "warning", message)
 
 
-# Which lines and arcs does this DXF file hold?
-
 DEEPEST = 32  # blocks within blocks
 MISSING = ("block-missing", "is not in the file")
 

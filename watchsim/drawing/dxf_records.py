@@ -12,8 +12,6 @@ from dataclasses import dataclass, field
 
 from watchsim.drawing.findings import Finding
 
-# Which records does this DXF file hold?
-
 BINARY_MARK = b"AutoCAD Binary DXF"
 LARGEST = 1e11  # drawing units; larger numbers are damage, and squares of them would lose the small ones
 _ESCAPE = re.compile(r"\\U\+([0-9A-Fa-f]{4})")

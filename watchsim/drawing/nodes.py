@@ -144,8 +144,6 @@ def arrival(a: Track, at_a: float, b: Track, at_b: float, way: float, depth: flo
     return 0.0
 
 
-# Which ends of edges are the same point?
-
 TIGHT = 1e-9  # metres: the decimals of a drawing
 CROWD = 64  # neighbours looked at per cell: where more ends crowd within a snap, none can be distinguished from another
 NOBODY: list[int] = []

@@ -90,8 +90,6 @@ def unit(v: Vector) -> Vector:
     return (v[0] / length, v[1] / length, v[2] / length) if length > 0.0 else (0.0, 0.0, 1.0)
 
 
-# Which shapes can a drawing hold, and what becomes of them in the plane?
-
 ROUND = 1e-9  # relative difference of the axes up to which an ellipse is a circle: below any drawing's decimals
 FLAT = 1e-9  # relative width below which an ellipse is seen edge-on
 

@@ -147,8 +147,6 @@ def _bezier_spans(powers: Array, widths: Array) -> Array:
     return control
 
 
-# Which lines and arcs is a spline made of?
-
 HIGHEST_DEGREE = 24  # CAD programs stop at 11; beyond this the basis functions lose their digits
 SAME_KNOT = 1e-10  # of the knots' range
 WEIGHTIEST = 1e9  # times the smallest weight

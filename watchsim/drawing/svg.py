@@ -319,8 +319,6 @@ def drawn_within(node: Node) -> int:
     return count
 
 
-# Which lines and arcs does this SVG file hold?
-
 DEEPEST_USE = 32  # <use> within <use>
 MOST_VISITS = 100_000  # to elements that are shown by a <use>
 

@@ -275,8 +275,6 @@ def _prefixed(attributes: dict[str, str], spaces: dict[str, str]) -> dict[str, s
     return result
 
 
-# Which names of elements and attributes does SVG know, and what becomes of the elements?
-
 CONTAINERS = frozenset(("g", "a", "svg"))
 SILENT = frozenset(  # neither drawn by themselves nor missed
     (

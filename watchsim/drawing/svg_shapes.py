@@ -399,8 +399,6 @@ def fitted(box: Box, width: float, height: float, aspect: str | None) -> tuple[f
     return sx, sy, tx, ty
 
 
-# What does one SVG element draw?
-
 QUARTER = 0.25 * TURN
 
 

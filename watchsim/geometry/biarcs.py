@@ -289,8 +289,6 @@ def shares(demand: Demand, begin: Array, end: Array, layout: Layout) -> tuple[Ar
     return nodes, load
 
 
-# Which two arcs join two points with given tangents?
-
 STRAIGHT = 1e6  # an arc of a radius above this many chords is a line: its rise is below 1.3e-7 of the chord
 
 

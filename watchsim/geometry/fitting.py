@@ -397,8 +397,6 @@ def bounds(bundle: Bundle, trial: Trial, chosen: NDArray[np.bool_]) -> Array:
     return worst
 
 
-# Which few arcs follow this curve?
-
 KINK = 1e-6  # radians between a single arc's and the curve's tangent at its end
 ROUNDS = 20  # of distributing the arcs anew
 ROUNDS_OF_HALVES = 6  # where the whole did not succeed

@@ -63,8 +63,6 @@ class Coil:
         return min(max(3.0 * (self.inner + self.outer) * (rest / swept - 1.0), -STEEPEST * way), STEEPEST * way)
 
 
-# How heavy is a hairspring, and how is its mass spread about the balance's axis?
-
 SHARE = 1.0 / 3.0  # of its inertia, and of its mass, that a spring held at one end adds to what it drives (Rayleigh)
 CHORDS = 48  # per turn, where the spiral is drawn
 

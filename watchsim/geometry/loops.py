@@ -316,8 +316,6 @@ def _under(arc: Arc, start: Point, end: Point, p: Point) -> bool:
     return (side < 0.0) == (arc.sweep > 0.0)
 
 
-# Which points draw an outline?
-
 SMALLEST_STEP = 1e-4  # radians; a finer chord differs from its arc by rounding only
 
 

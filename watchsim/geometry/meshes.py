@@ -26,8 +26,6 @@ from watchsim.geometry.loops import Loop, chords, polyline
 from watchsim.geometry.primitives import TURN, Arc, Edge, Line, Point
 from watchsim.geometry.solids import pieces, region
 
-# How is motion added to a glTF scene?
-
 Array = NDArray[np.float64]
 FLOAT = 5126  # the code of 32-bit floating point
 MOST_TURN = 1.5  # rad between two keys: beyond π the shortest turn would go the other way round

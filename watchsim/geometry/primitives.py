@@ -161,8 +161,6 @@ def middle(edge: Arc, exact: bool) -> tuple[float, float, float, float]:
     return float(x + radius * cosine), float(y + radius * sine), float(cosine), float(sine)
 
 
-# Which boxes hold these points?
-
 FEW = 300  # up to that many, all pairs are compared; the library takes longer to load
 
 

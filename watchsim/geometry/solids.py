@@ -191,8 +191,6 @@ def pieces(found: Region) -> Iterator[Region]:
     yield from (part for part in parts if part.geom_type == "Polygon" and part.area > 0.0)
 
 
-# What are mass and moments of inertia of a turned part?
-
 NODES, WEIGHTS = (tuple(map(float, column)) for column in np.polynomial.legendre.leggauss(24))
 ON_AXIS = 1e-6  # of the profile's largest radius: a profile drawn with few decimals may cross its axis by that
 
