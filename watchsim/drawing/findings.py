@@ -37,6 +37,11 @@ def named_length(name: str) -> tuple[str, float]:
     return usual.get(unit.factor, name.strip()), unit.factor
 
 
+def words(text: str) -> frozenset[str]:
+    """A set of words that is written as a text."""
+    return frozenset(text.split())
+
+
 ORDER = ("error", "warning", "notice")  # the gravest first
 
 

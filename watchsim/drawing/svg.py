@@ -367,18 +367,9 @@ def read_svg(data: bytes, units: str | None, fit: float) -> Content:
             return Content(units=page.units, units_from=page.units_from, findings=findings)
     else:
         found.findings.append(Finding("page", "warning", "the page has no width or no height: nothing of it is shown"))
-    return Content(
-        strokes=tuple(found.strokes),
-        points=tuple(found.points),
-        units=page.units,
-        units_from=page.units_from,
-        fitted_curves=found.curves,
-        fitted_arcs=found.arcs,
-        fitted_deviation=found.deviation,
-        drawn=found.drawn(),
-        ignored=dict(walker.left_out.ignored),
-        findings=(*notes, *styles.findings, *found.findings, *walker.left_out.findings(root)),
-    )
+    found.ignored = walker.left_out.ignored
+    findings = (*notes, *styles.findings, *found.findings, *walker.left_out.findings(root))
+    return found.content(page.units, page.units_from, findings)
 
 
 class Walker:
