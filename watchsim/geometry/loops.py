@@ -1,7 +1,8 @@
-"""Which points draw an outline?
+"""What is a sound outline, how large is it, which points draw it, which lie inside, and where do its edges meet?
 
-Pictures, movies and overlap checks need plain vertices; lines give their ends, arcs are sampled so finely that no
-chord strays further from its arc than requested.
+An outline is a chain of edges, each starting where the one before ends; closed, it bounds material on its left: an outer outline
+runs counter-clockwise, a hole clockwise. Pictures, movies and overlap checks need plain vertices; lines give their ends, arcs are
+sampled so finely that no chord strays further from its arc than requested.
 """
 
 from __future__ import annotations
@@ -15,11 +16,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.geometry.primitives import Arc, Edge, Point, moved, reflected
-
-# What is a sound outline?
-#
-# A chain of edges, each starting where the one before ends; closed, it bounds material on its left: an outer outline
-# runs counter-clockwise, a hole clockwise.
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,11 +48,9 @@ class Loop:
         return Loop(edges, self.layer, self.closed, self.hole)
 
 
-# What are the numbers of many edges, column by column?
-
 Floats = NDArray[np.float64]
 
-QUARTER = 0.5 * np.pi
+QUARTER = 0.5 * math.pi
 
 
 class Table(NamedTuple):
@@ -94,10 +88,7 @@ def table_of(edges: Sequence[Edge]) -> Table:
     return Table(start, end, box, arc, centre, radius, angle, sweep)
 
 
-# How large is an outline?
-
 Box = tuple[float, float, float, float]
-QUARTER_EXTENT = 0.5 * math.pi
 FEW = 32  # edges: from columns it takes longer
 
 
@@ -107,7 +98,7 @@ def edge_extents(edge: Edge) -> Box:
     xs, ys = [x0, x1], [y0, y1]
     if isinstance(edge, Arc):
         low, high = sorted((edge.start_angle, edge.start_angle + edge.sweep))
-        for k in range(math.ceil(low / QUARTER_EXTENT), math.floor(high / QUARTER_EXTENT) + 1):
+        for k in range(math.ceil(low / QUARTER), math.floor(high / QUARTER) + 1):
             ex, ey = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))[k % 4]
             xs.append(edge.x + edge.radius * ex)
             ys.append(edge.y + edge.radius * ey)
@@ -131,15 +122,13 @@ def total_length(loops: Iterable[Loop]) -> float:
     return math.fsum(edge.length for loop in loops for edge in loop.edges)
 
 
-# Which edges come near each other?
-#
-# A tree of square cells is refined, all cells of one level at once, until few edges pass through each cell; only edges that
-# share a cell can meet. The work grows with the number of edges, however they are arranged: where very many run together, not
-# every pair is given, and it is said where.
+# Edges that come near each other: a tree of square cells is refined, all cells of one level at once, until few edges pass
+# through each cell; only edges that share a cell can meet. The work grows with the number of edges, however they are arranged:
+# where very many run together, not every pair is given, and it is said where.
 
 Ints = NDArray[np.int64]
 
-FEW_NEAR_EDGES = 24  # edges in a cell that is refined no further
+IN_CELL = 24  # edges in a cell that is refined no further
 DEEPEST = 30  # levels: cells of a billionth of the drawing
 GROWTH = 64  # entries per edge; edges that run along each other could be cut into cells for ever
 MOST_ENTRIES = 3_000_000  # of edges in cells, and
@@ -175,7 +164,7 @@ def near_pairs(table: Table, reach: float) -> Pairs:
         starts = np.flatnonzero(np.append(True, np.any(cell[1:] != cell[:-1], axis=1)))
         counts = np.diff(np.append(starts, len(edge)))
         last = level == DEEPEST or len(edge) > min(GROWTH * count, MOST_ENTRIES) or size < 4.0 * reach
-        done = np.ones(len(counts), bool) if last else counts <= FEW_NEAR_EDGES
+        done = np.ones(len(counts), bool) if last else counts <= IN_CELL
         found, complete = _paired(table, edge, starts[done], counts[done], reach, room)
         keys += found
         room -= sum(map(len, found))
@@ -248,14 +237,12 @@ def _arc_passes(table: Table, edge: Ints, middle: Floats, half: float) -> NDArra
     return (np.hypot(*nearest.T) <= radius) & (np.hypot(*farthest.T) >= radius)
 
 
-# Does this point lie inside the outline?
-#
-# Exact for arcs: the winding number of the polygon of chords, and one turn more for each arc between which and its chord the
-# point lies.
-
-
 class Inside:
-    """Answers for many points of one closed loop: its edges are sorted into strips of height, and one strip is looked at."""
+    """Answers for many points of one closed loop: its edges are sorted into strips of height, and one strip is looked at.
+
+    Exact for arcs: the winding number of the polygon of chords, and one turn more for each arc between which and its chord the
+    point lies.
+    """
 
     def __init__(self, loop: Loop) -> None:
         self.edges = loop.edges
