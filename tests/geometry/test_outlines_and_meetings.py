@@ -21,14 +21,15 @@ from watchsim.geometry.loops import (
     chords,
     edge_extents,
     extents,
+    meetings,
     near_pairs,
     points_along,
     polyline,
     table_of,
     total_length,
     winding,
+    within,
 )
-from watchsim.geometry.meetings import meetings, within
 from watchsim.geometry.primitives import QUARTER, TURN, Arc, Edge, Line, Point, cos_sin, moved
 from watchsim.geometry.solids import pieces, region
 

@@ -19,9 +19,7 @@ from numpy.typing import NDArray
 from watchsim.drawing.findings import Finding, Stroke, finding_at
 from watchsim.drawing.material import MARKS, last_word
 from watchsim.drawing.nodes import TIGHT, Grid, Nodes, Outline, Track, nearest_fraction, passes_through
-from watchsim.geometry.loops import Box, Floats, Ints, Loop, Table, extents, table_of
-from watchsim.geometry.loops import near_pairs as near_pairs_of_loops
-from watchsim.geometry.meetings import meetings, within
+from watchsim.geometry.loops import Box, Floats, Ints, Loop, Table, extents, meetings, near_pairs, table_of, within
 from watchsim.geometry.primitives import Arc, Edge, Line, Point
 
 # Loose ends are paired with their nearest partner, so that each gap is named once, with both ends.
@@ -39,14 +37,14 @@ def open_ends(chains: Sequence[Sequence[int]], loose: Sequence[int], strokes: Se
     """
     if not loose:
         return []
-    near = near_pairs([nodes.ends[end] for end in loose])
+    near = near_ends([nodes.ends[end] for end in loose])
     stray = stray_lines([steps[0] // 2 for steps in chains if len(steps) == 1], loose, near, strokes)
     pairs = paired(loose, near, stray, chains_of(chains, strokes))
     found = [stray_finding(strokes[number]) for number in stray if last_word(strokes[number].layer) not in MARKS]
     return found + [gap_finding(a, b, strokes, nodes) for a, b in pairs]
 
 
-def near_pairs(points: Sequence[Point]) -> list[tuple[float, int, int]]:
+def near_ends(points: Sequence[Point]) -> list[tuple[float, int, int]]:
     """(distance, i, j) with i < j, nearest first, of all pairs of which one is among the nearest of the other."""
     count = min(NEIGHBOURS + 1, len(points))
     if count < 2:
@@ -239,7 +237,7 @@ def crossings(outlines: Sequence[Outline], deviation: float = 0.0) -> list[Findi
 def all_meetings(layer: Layer) -> tuple[Iterator[Meeting], tuple[Point, ...]]:
     """Pairs of edges that meet other than at their common joint, and where there were too many edges to tell."""
     table = table_of(layer.edges)
-    near = near_pairs_of_loops(table, TIGHT)
+    near = near_pairs(table, TIGHT)
     parts = (slice(k, k + AT_ONCE) for k in range(0, len(near.first), AT_ONCE))
     found = (meetings_of(layer, table, near.first[part], near.second[part]) for part in parts)
     return chain.from_iterable(found), near.crowds
