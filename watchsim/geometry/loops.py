@@ -1,8 +1,8 @@
 """What is a sound outline, how large is it, which points draw it, which lie inside, and where do its edges meet?
 
 An outline is a chain of edges, each starting where the one before ends; closed, it bounds material on its left: an outer
-outline runs counter-clockwise, a hole clockwise. Pictures, movies and overlap checks need plain vertices; lines give their ends,
-arcs are sampled so finely that no chord strays further from its arc than requested.
+outline runs counter-clockwise, a hole clockwise. Pictures, movies and overlap checks need plain vertices; lines give their
+ends, arcs are sampled so finely that no chord strays further from its arc than requested.
 """
 
 from __future__ import annotations
@@ -238,8 +238,8 @@ def _arc_passes(table: Table, edge: Ints, middle: Floats, half: float) -> Flags:
     return (np.hypot(*nearest.T) <= radius) & (np.hypot(*farthest.T) >= radius)
 
 
-# Where two edges meet: closed forms for lines and arcs, for many pairs at once: the roots of line and line, line and circle, circle
-# and circle, and ends of one edge that lie on the other (which edges along each other have instead of roots).
+# Where two edges meet: closed forms for lines and arcs, for many pairs at once: the roots of line and line, line and circle,
+# circle and circle, and ends of one edge that lie on the other (which edges along each other have instead of roots).
 
 PARALLEL = 1e-12  # sine of the angle between lines below which their root is rounding
 
