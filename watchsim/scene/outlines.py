@@ -17,7 +17,6 @@ from watchsim.construction.design import drawing_of
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.findings import Finding
 from watchsim.drawing.nodes import Track
-from watchsim.drawing.read import SNAP
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import AT_ONCE, Floats, Ints, Loop, near_pairs, table_of
 from watchsim.geometry.primitives import TURN, Arc, Line, Point
@@ -44,7 +43,7 @@ def shape_loops(table: Table, key: str) -> tuple[Loop, ...]:
 
 
 def _circle(table: Table) -> Loop:
-    radius = table.positive("circle", "it is the radius")
+    radius = table.quantity("circle", math.nan)
     return Loop((Arc(0.0, 0.0, radius, 0.0, TURN),), "circle")
 
 
@@ -346,7 +345,7 @@ def _open(table: Table, folder: Path, made: Made) -> Drawing | None:
         what = "this is a folder; the" if name else "the"
         table.fault("drawing", f"{what} name of a drawing is needed here: {there}", with_value=True)
         return None
-    snap = table.positive("snap", "it is the gap that may be closed") if "snap" in table else SNAP
+    snap = table.quantity("snap")
     told = table.text("units")
     units = told if isinstance(table.mapping.get("units"), str) else None
     if name in made and not math.isnan(snap):
