@@ -84,8 +84,6 @@ def _refused(scene: Scene, seen: str) -> SceneError:
     return SceneError(faults.found)
 
 
-# What does the watch settle to, without waiting until it has?
-
 REST = 1e-9  # rad or m per scale: bodies that stand still come back so closely, or the section is moved on
 SECTIONS = 6  # of them at most
 AFTERWARDS = 24  # periods of the run that shows what happens where there is no cycle
