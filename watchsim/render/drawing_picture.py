@@ -9,9 +9,18 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+from matplotlib.legend import Legend
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch, PathPatch
+from matplotlib.path import Path as Curve
+from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 
 from watchsim.drawing.drawing import Drawing
@@ -23,14 +32,6 @@ from watchsim.geometry.primitives import Arc, Point
 from watchsim.render.palette import BACKGROUND, FAINT, GRID, INK
 from watchsim.storage.write import write_file
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-    from matplotlib.legend import Legend
-
-
-# Where do the numbered circles and their numbers go, so that every number can be read?
-#
 # Faults a hair apart share a circle. Numbers are put beside their circle where they cover the least of other circles and
 # numbers, further out with a thin line where it is crowded. All in points on the paper.
 
@@ -48,8 +49,6 @@ Box = tuple[float, float, float, float]
 
 def fault_circles(axes: Axes, findings: Sequence[Finding]) -> int:
     """Draws circles with the numbers of the report, the gravest first; returns how many faults with a place have none."""
-    from matplotlib.figure import Figure
-
     numbered = sorted(enumerate(findings, 1), key=lambda pair: ORDER.index(pair[1].severity))
     placed = [(k, x, y) for k, finding in numbered for x, y in places(finding)]
     if not placed:
@@ -139,8 +138,6 @@ def best_box(
 
 
 def _draw(axes: Axes, place: Point, centre: NDArray[np.float64], text: str, box: Box) -> None:
-    from matplotlib.patheffects import withStroke
-
     x, y = place
     middle = (0.5 * (box[0] + box[2]) - centre[0], 0.5 * (box[1] + box[3]) - centre[1])
     ring = 2.0 * RADIUS
@@ -160,8 +157,6 @@ def _draw(axes: Axes, place: Point, centre: NDArray[np.float64], text: str, box:
         path_effects=[withStroke(linewidth=2.5, foreground="white")],
     )
 
-
-# How does a drawing look to the program?
 
 COLOURS = ("#2f5d8a", "#a8780a", "#2e7d57", "#7b4a9e", "#b0562c", "#3f8f98", "#5f6b78", "#96527a", "#6f7f1f", "#8a4b4b")
 SIZE = (9.0, 7.2)  # inches
@@ -186,9 +181,6 @@ def draw_drawing(drawing: Drawing, png_path: Path | str, centres: bool = False) 
 
 def picture(drawing: Drawing, centres: bool = False) -> Figure:
     """The figure, on an Agg canvas; with `centres`, dots at the centres of all arcs that lie in the picture."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
     box = _frame(drawing)
     figure = Figure(figsize=_paper(box), facecolor=BACKGROUND, layout="constrained")
     FigureCanvasAgg(figure)
@@ -269,10 +261,6 @@ def _layer(axes: Axes, drawing: Drawing, look: _Look, role: str, deviation: floa
 
     A bore on a layer of its own is white, and what only marks a place has no tint.
     """
-    from matplotlib.collections import LineCollection
-    from matplotlib.patches import PathPatch
-    from matplotlib.path import Path as Curve
-
     layer, colour, hatch = look
     closed = [1e3 * polyline(loop, deviation) for loop in drawing.loops if loop.layer == layer]
     chains = [1e3 * polyline(loop, deviation) for loop in drawing.open_chains if loop.layer == layer]
@@ -295,8 +283,6 @@ def _layer(axes: Axes, drawing: Drawing, look: _Look, role: str, deviation: floa
 
 def _codes(count: int) -> np.ndarray:
     """Path codes of one outline whose last point repeats the first."""
-    from matplotlib.path import Path as Curve
-
     codes = np.full(count, Curve.LINETO, dtype=Curve.code_type)
     codes[0], codes[-1] = Curve.MOVETO, Curve.CLOSEPOLY
     return codes
@@ -312,9 +298,6 @@ def _centres(axes: Axes, drawing: Drawing, layer: str, colour: str) -> None:
 
 def _legend(axes: Axes, drawing: Drawing, centres: bool) -> Legend:
     """Layer names beside the picture, and what crosses, dashes and circles mean where there are any."""
-    from matplotlib.lines import Line2D
-    from matplotlib.patches import Patch
-
     roles = layer_roles(drawing.loops)
     drawn = {loop.layer for loop in (*drawing.loops, *drawing.open_chains)}
 
