@@ -21,12 +21,12 @@ from scipy.interpolate import BPoly
 
 from watchsim.analysis.phases import Phase
 from watchsim.analysis.summary import summary
+from watchsim.cli import main
 from watchsim.drawing.read import read
 from watchsim.escapement.function_report import statics
 from watchsim.escapement.measure import measure
 from watchsim.geometry.loops import Loop, polyline
 from watchsim.geometry.primitives import Arc, Line
-from watchsim.cli import main
 from watchsim.pages.html import SCRIPTS, element, embedded, joined
 from watchsim.pages.player import TooMuch, channels, path_data, shown
 from watchsim.pages.report_page import page_text, report

@@ -47,8 +47,8 @@ from watchsim.render.palette import (
     mixed,
     on_dark,
 )
-from watchsim.render.study_plot import ENGINES, plot_speed
 from watchsim.render.rows import COLUMNS, bands, distinct, reduced
+from watchsim.render.study_plot import ENGINES, plot_speed
 from watchsim.render.style import SERIES, figure, key
 from watchsim.render.timing_plot import PAPER, plot_tape
 from watchsim.simulation.simulate import simulate

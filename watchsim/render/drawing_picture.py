@@ -1,7 +1,8 @@
 """How does a drawing look to the program?
 
 Outlines by layer, their material tinted, pivots as crosses, and a numbered red circle at every fault, so that the designer
-sees what was read and where to mend it. The numbers are those of the text report.
+sees what was read and where to mend it. The numbers are those of the text report. Faults a hair apart share a circle; a number
+stands beside its circle where it covers the least of other circles and numbers, further out with a thin line in a crowd.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -19,22 +20,19 @@ from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, PathPatch
-from matplotlib.path import Path as Curve
 from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.findings import ORDER, Finding
 from watchsim.drawing.material import layer_roles
-from watchsim.geometry.loops import Box as Box_of_loops
-from watchsim.geometry.loops import extents, polyline
+from watchsim.geometry.loops import Box, extents, polyline
 from watchsim.geometry.primitives import Arc, Point
 from watchsim.render.palette import BACKGROUND, FAINT, GRID, INK
+from watchsim.render.parts import compound
 from watchsim.storage.write import write_file
 
-# Faults a hair apart share a circle. Numbers are put beside their circle where they cover the least of other circles and
-# numbers, further out with a thin line where it is crowded. All in points on the paper.
-
+# Lengths of the marks are in points on the paper.
 FAULT = "#d0021b"
 CIRCLED = 80  # more circles would cover the part
 RADIUS = 6.5  # of a circle
@@ -43,8 +41,6 @@ LETTER, LINE = 5.9, 9.5  # width of a digit and height of a number
 REACHES = (10.5, 21.0, 35.0, 50.0, 65.0, 80.0)  # from the centre of a circle to the near side of its number
 WAYS = 12
 GROUPS = 2  # numbers or ranges of numbers written at one circle
-
-Box = tuple[float, float, float, float]
 
 
 def fault_circles(axes: Axes, findings: Sequence[Finding]) -> int:
@@ -167,6 +163,7 @@ TINT = 0.16  # opacity of material
 HATCHES = ("", "////", "....", "xxxx")  # of the material, for layers beyond the last colour
 BESIDE = 1.015  # of the width of the axes: where the legend begins
 LISTED = 20  # layers in the legend
+NAMED = 60  # letters of the file's name
 
 
 def draw_drawing(drawing: Drawing, png_path: Path | str, centres: bool = False) -> None:
@@ -199,7 +196,7 @@ def picture(drawing: Drawing, centres: bool = False) -> Figure:
     return figure
 
 
-def _frame(drawing: Drawing) -> Box_of_loops:
+def _frame(drawing: Drawing) -> Box:
     """What the picture shows, in metres: everything drawn and a margin, never nothing."""
     box = extents((*drawing.loops, *drawing.open_chains))
     xs = [x for _, x, _ in drawing.points] + ([box[0], box[2]] if box else [])
@@ -210,7 +207,7 @@ def _frame(drawing: Drawing) -> Box_of_loops:
     return (min(xs) - margin, min(ys) - margin, max(xs) + margin, max(ys) + margin)
 
 
-def _paper(box: Box_of_loops) -> tuple[float, float]:
+def _paper(box: Box) -> tuple[float, float]:
     """A sheet of constant area in the shape of the part, within limits; room for scales and legend beside it."""
     ratio = (box[2] - box[0]) / (box[3] - box[1])
     side = math.sqrt(SIZE[0] * SIZE[1])
@@ -218,7 +215,7 @@ def _paper(box: Box_of_loops) -> tuple[float, float]:
     return (min(max(width, SHORTEST), LONGEST) + 2.2, min(max(height, SHORTEST), LONGEST) + 0.6)
 
 
-def _furnish(axes: Axes, drawing: Drawing, box: Box_of_loops) -> None:
+def _furnish(axes: Axes, drawing: Drawing, box: Box) -> None:
     """Scales in millimetres, equal both ways; the title says what was read and how large it is."""
     axes.set_facecolor("white")
     axes.set_aspect("equal")
@@ -236,11 +233,11 @@ def _furnish(axes: Axes, drawing: Drawing, box: Box_of_loops) -> None:
 
 
 def _title(drawing: Drawing) -> str:
-    box = extents((*drawing.loops, *drawing.open_chains))
+    name, box = _short(drawing.path.name, NAMED), extents((*drawing.loops, *drawing.open_chains))
     if box is None:
-        return f"{drawing.path.name}: nothing to show"
+        return f"{name}: nothing to show"
     size = f"{1e3 * (box[2] - box[0]):.4g} × {1e3 * (box[3] - box[1]):.4g} mm"
-    return f"{drawing.path.name}   {size}{'' if drawing.units else '   (units not stated, taken as mm)'}"
+    return f"{name}   {size}{'' if drawing.units else '   (units not stated, taken as mm)'}"
 
 
 class _Look(NamedTuple):
@@ -266,7 +263,7 @@ def _layer(axes: Axes, drawing: Drawing, look: _Look, role: str, deviation: floa
     chains = [1e3 * polyline(loop, deviation) for loop in drawing.open_chains if loop.layer == layer]
     if closed:
         # Holes run the other way round, so the winding rule leaves them out.
-        curve = Curve(np.concatenate(closed), np.concatenate([_codes(len(points)) for points in closed]))
+        curve = compound(closed)
         if role == "material":
             axes.add_patch(PathPatch(curve, facecolor=colour, alpha=TINT, linewidth=0.0))
         elif role == "bore":
@@ -279,13 +276,6 @@ def _layer(axes: Axes, drawing: Drawing, look: _Look, role: str, deviation: floa
     places = [(1e3 * x, 1e3 * y) for name, x, y in drawing.points if name == layer]
     if places:
         axes.plot(*zip(*places, strict=True), "+", color=colour, markersize=13, markeredgewidth=1.6, zorder=4)
-
-
-def _codes(count: int) -> np.ndarray:
-    """Path codes of one outline whose last point repeats the first."""
-    codes = np.full(count, Curve.LINETO, dtype=Curve.code_type)
-    codes[0], codes[-1] = Curve.MOVETO, Curve.CLOSEPOLY
-    return codes
 
 
 def _centres(axes: Axes, drawing: Drawing, layer: str, colour: str) -> None:
@@ -321,20 +311,14 @@ def _legend(axes: Axes, drawing: Drawing, centres: bool) -> Legend:
         ring = Line2D([], [], marker="o", linestyle="none", markersize=10, markerfacecolor="none", markeredgecolor=FAULT)
         rows.append((ring, "fault: see the list"))
     handles, names = zip(*rows, strict=True)
-    legend = axes.legend(
-        handles,
-        names,
-        loc="upper left",
-        bbox_to_anchor=(BESIDE, 1.0),
-        borderaxespad=0.0,
-        frameon=False,
-        fontsize=9,
-        labelcolor=INK,
-    )
+    place: dict[str, Any] = {"loc": "upper left", "bbox_to_anchor": (BESIDE, 1.0), "borderaxespad": 0.0}
+    legend = axes.legend(handles, names, frameon=False, fontsize=9, labelcolor=INK, **place)
     for text in legend.get_texts():
         text.set_parse_math(False)
     return legend
 
 
-def _short(name: str) -> str:
-    return name if len(name) <= 24 else name[:23] + "…"
+def _short(name: str, most: int = 24) -> str:
+    """One line of at most so many letters: a name may be as long as the file."""
+    name = " ".join(name[: 4 * most].split())
+    return name if len(name) <= most else name[: most - 1] + "…"
