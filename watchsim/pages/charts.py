@@ -1,4 +1,4 @@
-"""The still picture of a page: for paper, and for readers that run no scripts."""
+"""Charts of the timing sheet, and the still picture of a page: SVG in the page, for paper and for readers without scripts."""
 
 from __future__ import annotations
 
@@ -16,8 +16,6 @@ from watchsim.render.parts import Part
 from watchsim.render.rows import reduced
 from watchsim.render.view import Frame, View, Window, bounds, hairsprings, poses, room_of, view, zigzags
 from watchsim.simulation.trajectory import Array, Trajectory
-
-# As SVG in the page itself, in the colours of its style sheet.
 
 WIDTH, HEIGHT = 560.0, 230.0
 LEFT, RIGHT, TOP, BOTTOM = 88.0, 12.0, 12.0, 44.0  # of the large letters on a telephone five fit between label and axis
@@ -151,8 +149,6 @@ def strip(entries: Sequence[tuple[str, float, int]], unit: str, description: str
     picture = element("svg", *parts, viewBox=f"0 0 {WIDTH:g} {height + 22:g}", role="img", aria_label=description)
     return element("figure", picture, class_="chart")
 
-
-# The still picture of a page: for paper, and for readers that run no scripts.
 
 MARGIN = 0.04
 MOST_POSTER = 150_000  # characters of path data; more than that is left to the player

@@ -23,7 +23,7 @@ from watchsim.results.folder import LOCK, travelling
 from watchsim.results.tables import json_text
 from watchsim.simulation.trajectory import Trajectory
 
-# Whatever is no `Markup` is escaped on its way into an element.
+# Whatever is no `Markup` is escaped on its way into an element: no title and no file name can become anything else.
 
 VOID = frozenset(("img", "input", "meta", "path", "rect", "line", "circle", "polyline"))
 
@@ -107,7 +107,7 @@ def image(png: bytes, words: str, width: int) -> Markup:
     return joined(element("img", src=f"data:image/png;base64,{data}", alt=words, width=width))
 
 
-# The scene with its drawings, and the numbers: one zip archive, and each by itself.
+# Files to be saved from a page: the scene with its drawings, and the numbers, one zip archive, and each by itself.
 
 MOST = 300_000  # bytes of packed files; a page must fit into a mail
 LONGEST = 20_000_000  # bytes of a table that is worth trying: packed it is a tenth

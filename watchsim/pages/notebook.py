@@ -1,4 +1,4 @@
-"""How is a run played inside a notebook?
+"""What do runs, scenes, beats and studies show of themselves in a notebook, and how is a run played there?
 
 The page of `report` without its sheet and its files, in a frame of its own that may run its scripts and nothing else.
 """
@@ -93,8 +93,6 @@ def sensitivity_html(found: Sensitivity) -> str:
 def _value(value: float | str | None, digits: int) -> str:
     return "" if value is None else value if isinstance(value, str) else minus(f"{value:.{digits}g}")
 
-
-# A few lines and a small picture, in 30 kB at most.
 
 SIZE = (560, 315)
 COLOURS = 40  # of a picture: a palette makes it small

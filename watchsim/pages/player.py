@@ -1,4 +1,7 @@
-"""Which contacts are closed while a page plays, where, and how hard do they press?"""
+"""What does the player of a page need of a run: shapes, rows of the motion, events, contacts with their forces?
+
+Arrays travel as little-endian binary in base64: a fourth of the size of digits, and read back bit by bit.
+"""
 
 from __future__ import annotations
 
@@ -50,8 +53,6 @@ from watchsim.simulation.trajectory import Array, Trajectory, between
 from watchsim.storage.columns import rows_where
 from watchsim.units import metric
 
-# As little-endian binary in base64: a fourth of the size of digits, and read back bit by bit.
-
 
 def doubles(values: ArrayLike) -> str:
     """Times: differences of nanoseconds must survive beside hours."""
@@ -72,8 +73,8 @@ def _text(values: np.ndarray) -> str:
     return base64.b64encode(np.ascontiguousarray(values).tobytes()).decode("ascii")
 
 
-# The very lines and arcs of the drawing, as codes and numbers for a canvas, and once more as a still picture in SVG, which
-# prints, and which stands there where a mail program runs no scripts.
+# Parts are the very lines and arcs of the drawing, as codes and numbers for a canvas, and once more as a still picture in SVG,
+# which prints, and which stands there where a mail program runs no scripts.
 
 MOVE, LINE, ARC, CLOSE = range(4)
 ROUGH = 1e-3  # of the picture: chords where only the order and the nesting of parts matter

@@ -277,8 +277,6 @@ def _tape(found: Beats) -> Array:
     return np.asarray(rank * half - (found.mark - found.mark[known[0]]))
 
 
-# The numbers of summary.json, in a watchmaker's units and order.
-
 VERDICTS = {
     "ticks": ("good", "The watch ticks"),
     "stops": ("bad", "The watch stops"),

@@ -1,4 +1,9 @@
-"""How large is a picture, and of which format: as asked, or as the mechanism is shaped?"""
+"""How do frames become a file, in how many colours, and how large are they?
+
+Raw frames are piped into the ffmpeg that comes with imageio-ffmpeg. The file gets its name only when the encoder has ended
+well, so that a full disk or an interrupt never leaves half a movie. A GIF has one palette for all frames: nothing flickers,
+unchanged pixels stay unchanged, and the file stays small.
+"""
 
 from __future__ import annotations
 
@@ -19,8 +24,6 @@ from watchsim.render.view import Pixels, Window, view
 from watchsim.render.words import lay_out
 from watchsim.simulation.trajectory import Trajectory
 from watchsim.storage.write import write_file
-
-# One palette for all frames: nothing flickers, unchanged pixels stay unchanged, and the file stays small.
 
 COLOURS = 64
 PINNED = 24  # of these: the plain faces, exactly
@@ -72,10 +75,6 @@ def _with_table(colours: Pixels) -> Palette:
     exact = colours.astype(np.int32) >> (8 - BITS)
     table[((exact[:, 0] << (2 * BITS)) | (exact[:, 1] << BITS) | exact[:, 2])[::-1]] = np.arange(len(colours))[::-1]
     return Palette(colours, table)
-
-
-# Raw frames are piped into the ffmpeg that comes with imageio-ffmpeg. The file gets its name only when the encoder has ended
-# well, so that a full disk or an interrupt never leaves half a movie.
 
 
 ENDINGS = (".mp4", ".gif")

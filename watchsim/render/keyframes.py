@@ -1,4 +1,7 @@
-"""What does a scene look like in three dimensions?"""
+"""What does a scene look like in three dimensions, and at which instants must a player know where its bodies are?
+
+A player draws straight lines between keys, so keys stand as close as the motion asks for.
+"""
 
 from __future__ import annotations
 

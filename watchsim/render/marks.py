@@ -1,4 +1,4 @@
-"""What do the numbers in a picture say: time, speed, angles, scale?"""
+"""What is marked in a picture: contacts, forces, stones; and what do its numbers say: time, speed, angles, scale?"""
 
 from __future__ import annotations
 
@@ -203,9 +203,8 @@ def _world(frame: Sequence[float] | Array, x: float, y: float) -> Point:
     return frame[0] + c * x - s * y, frame[1] + s * x + c * y
 
 
-# As the geometry of function has it: the stone that a tooth meets first on its way is the entry stone, whatever layers are
-# called
-# and in whatever order they were drawn.
+# The stone that a tooth meets first on its way is the entry stone, whatever layers are called and in whatever order they were
+# drawn.
 
 STONES = ("entry stone", "exit stone")
 FINE = 1e-6  # of the scene's size: how closely an outline is followed to find which one a tooth rests on

@@ -1,4 +1,11 @@
-"""How does a mechanism turned by hand become a short movie?"""
+"""How does a run, or a mechanism turned by hand, become a movie?
+
+movie(run, "beat.mp4", window=(19.4, 19.75), speed=1 / 20)
+
+At an even speed, or adaptive: the stretches in which things happen get most of the film, the others are hurried through, and
+between the two the speed changes smoothly. Each blow sounds when its instant is on the screen; it keeps its pitch and dies away
+as it does in the watch. Any frame can also be drawn alone with `frame`.
+"""
 
 from __future__ import annotations
 
@@ -76,10 +83,6 @@ def _merged(spans: Array, gap: float, window: Window) -> Iterator[Window]:
         last = [start, end]
     if last is not None:
         yield max(last[0], window[0]), min(last[1], window[1])
-
-
-# At an even speed, or adaptive: the stretches in which things happen get most of the film, the others are hurried through, and
-# between the two the speed changes smoothly.
 
 
 MOST_FRAMES = 1e6
@@ -176,9 +179,6 @@ def _instants(shown: Array, film: Array, t: Array, log_speed: Array) -> Array:
     return t[piece] + np.where(steep, bent, rest)
 
 
-# Any of them can be drawn alone.
-
-
 AT_ONCE = 1000  # instants whose poses are asked for together: memory does not grow with the film
 
 
@@ -214,11 +214,6 @@ class Film:
         )
 
 
-# At the moment its instant is on the screen, whatever the speed: in slow motion blows are heard further apart, at adaptive
-# speed
-# as the pictures go. A blow itself is not stretched; it keeps its pitch and dies away as it does in the watch.
-
-
 def soundtrack(run: Trajectory, plan: Plan) -> Score:
     """The blows within a plan, in seconds of the film. ValueError where there are none."""
     times, energies = noises(run)
@@ -233,10 +228,6 @@ def write_soundtrack(place: Path, heard: Score) -> None:
     """Write it as WAV, as long as the film."""
     write_score(place, heard, heard.known)
 
-
-#     movie(run, "beat.mp4", window=(19.4, 19.75), speed=1 / 20)
-#
-# Any frame can also be drawn alone with `frame`.
 
 ADAPTIVE = "adaptive"  # a speed
 

@@ -1,4 +1,4 @@
-"""Which colours does a part wear?
+"""Which colours do parts wear, and in which is a picture drawn besides, on light or on dark ground?
 
 Watchmaking has its own: brass wheels, grey steel levers, ruby stones. The words of layers and bodies tell which. Parts that
 never move have a colour of their own, whatever they are called.
@@ -202,8 +202,9 @@ DARK = Style(
 )
 
 
-# Ground, words, rules, marks and the bands of phases take the colours that movies have there; other curves and words keep their
-# hue and become light enough to be read, other pale faces dark enough to lie behind. Parts keep what they wear.
+# A figure drawn for paper, on dark ground: ground, words, rules, marks and the bands of phases take the colours that movies
+# have there; other curves and words keep their hue and become light enough to be read, other pale faces dark enough to lie
+# behind. Parts keep what they wear.
 
 READABLE = 4.5  # contrast of words and curves with the ground, as the guidelines for pages ask (WCAG 2.1, 1.4.3)
 PALE, BEHIND = 0.82, 0.24  # lightness from which a face is one that lies behind, and what it becomes

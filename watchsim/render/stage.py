@@ -1,4 +1,8 @@
-"""How does what a picture shows besides the mechanism share the room with it, and how is it drawn?"""
+"""What does one frame show: the mechanism, and what is asked for beside it?
+
+The background (fixed bodies, title, scale, names) is drawn once; then one patch per part is moved by its transform and the
+changing numbers are copied in. Frames do not depend on one another.
+"""
 
 from __future__ import annotations
 
@@ -175,10 +179,6 @@ class Beside:
         patch = LastingPatch(path, transform=IdentityTransform(), **look)
         patch.set_figure(self._figure)
         return patch
-
-
-# The background (fixed bodies, title, scale, names) is drawn once; then one patch per part is moved by its transform and
-# the changing numbers are copied in. Frames do not depend on one another.
 
 
 DPI = 72.0  # one point is one pixel

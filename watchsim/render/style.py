@@ -1,4 +1,7 @@
-"""Which phases of which beats pass while a window is shown, where it shows so few that they can be seen?"""
+"""What do all plots have in common: width in print, sizes of letters, axes, the stretch of time that they show?
+
+A figure is as wide as it will be printed, so that a letter of 6 pt here is one of 6 pt there. Pages under docs/ use the same.
+"""
 
 from __future__ import annotations
 
@@ -25,8 +28,6 @@ from watchsim.render.palette import FAINT, GRID, INK
 from watchsim.render.view import Window, recorded, stretch
 from watchsim.scene.roles import frequency, keeps_time, with_anchor
 from watchsim.simulation.trajectory import Trajectory
-
-# A figure is as wide as it will be printed, so that a letter of 6 pt here is one of 6 pt there. Pages under docs/ use the same.
 
 MM = 1.0 / 25.4  # inches
 POINT = 1.0 / 72.0 / MM  # mm
@@ -206,8 +207,8 @@ def small_png(figure: Figure, dots: int) -> bytes:
     return small.getvalue()
 
 
-# Worked out from the number of characters. matplotlib's own layouts draw everything twice more to measure it, which takes
-# longer than the plot.
+# The room for words around panels is worked out from the number of characters. matplotlib's own layouts draw everything twice
+# more to measure it, which takes longer than the plot.
 
 INCH = 72.0  # pt
 DIGIT = 0.637  # width of a digit over its size, in matplotlib's own font

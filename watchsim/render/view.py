@@ -152,7 +152,7 @@ def dense(run: Trajectory, window: Window, least: int = 2000, accelerations: boo
     return t, q, u, a
 
 
-# It is drawn from the shape that a scene gives its spring: the collet turns with the balance, the stud stays where it is. It
+# A hairspring is drawn from the shape that a scene gives it: the collet turns with the balance, the stud stays where it is. It
 # takes no part in the motion.
 
 STUD = 0.045  # of the stud's radius: half a side of the block that holds the outer end
@@ -208,8 +208,8 @@ def room_for(scene: Scene, body: str) -> Array:
     return reach * np.column_stack((np.cos(angles), np.sin(angles))) if reach else np.empty((0, 2))
 
 
-# It is drawn as a helical spring is seen from the side: a straight eye at either end, and between them a zigzag of always the
-# same width, which a stretched spring draws out. It takes no part in the motion.
+# A spring between two points is drawn as a helical spring is seen from the side: a straight eye at either end, and between them
+# a zigzag of always the same width, which a stretched spring draws out. It takes no part in the motion.
 
 COILS = 10
 WIDTH = 0.05  # of its length: half the width of the zigzag

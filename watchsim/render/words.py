@@ -1,4 +1,4 @@
-"""Where do the words of a frame stand?
+"""Where do the words of a frame stand, and how are those written that change?
 
 A band at the top for title and time, one at the bottom for what every body reads and the scale; the mechanism has the
 rest. What never changes becomes artists of the figure; what changes is written by `Layout.write`.
