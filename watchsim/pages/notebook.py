@@ -97,7 +97,7 @@ def _value(value: float | str | None, digits: int) -> str:
 SIZE = (560, 315)
 COLOURS = 40  # of a picture: a palette makes it small
 NAMED = 8  # bodies
-DOTS = 60  # of a series of a chart
+DOTS = 120  # of a series of a chart
 
 
 def scene_html(scene: Scene) -> str:
