@@ -7,14 +7,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import Conflict, Design, dim
-from watchsim.construction.outline import circle, rounded
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim
+from watchsim.construction.outline import circle, polygon
 from watchsim.drawing.write import Sheet
-from watchsim.geometry.loops import Loop
 
 # Which numbers does the designer of an eccentric cam and its follower choose?
-
-CHOSEN = "chosen for this design"
 
 
 @dataclass(frozen=True)
@@ -99,8 +96,8 @@ def draw(values: Cam) -> dict[str, Sheet]:
     bore = circle("CAM", (0.0, 0.0), BORE * (values.radius - values.eccentricity), hole=True)
     cam = [circle("CAM", (0.0, -values.eccentricity), values.radius), bore]
     half, top = 0.6 * values.roller_radius, SHAFT * values.roller_radius
-    shaft = rounded([(half, 0.0, 0.0), (half, top, 0.0), (-half, top, 0.0), (-half, 0.0, 0.0)])
-    follower = [circle("END", (0.0, 0.0), values.roller_radius), Loop(tuple(shaft), "SHAFT")]
+    shaft = polygon("SHAFT", [(half, 0.0), (half, top), (-half, top), (-half, 0.0)])
+    follower = [circle("END", (0.0, 0.0), values.roller_radius), shaft]
     return {"cam": Sheet(tuple(cam)), "follower": Sheet(tuple(follower))}
 
 

@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from watchsim.construction.design import Conflict, Design, Impossible, dim
+from watchsim.construction.design import CHOSEN, Conflict, Design, Impossible, dim
 from watchsim.construction.outline import arc_between, polar
 from watchsim.construction.parts import arc_through, gear_outline, gear_pair_scene, other_flank
 from watchsim.drawing.write import Sheet
@@ -16,7 +16,6 @@ from watchsim.geometry.primitives import Edge, Line, Point
 
 # Which numbers does the designer of a wheel and pinion of a watch train choose?
 
-CHOSEN = "chosen for this design"
 HALF = "half a pitch"
 
 

@@ -10,7 +10,7 @@ from functools import cached_property
 from scipy.optimize import brentq
 
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import Conflict, Design, Impossible, dim
+from watchsim.construction.design import CHOSEN, ESTIMATE, Conflict, Design, Impossible, dim
 from watchsim.construction.outline import angle_of, arc_between, arc_of_radius, circle, fillet_chain, polar
 from watchsim.construction.parts import Arms, BalanceWheel, balance_wheel
 from watchsim.drawing.write import Sheet
@@ -22,7 +22,7 @@ from watchsim.geometry.primitives import Edge, Line, Point
 # Angles of lift and lock are the balance's, of teeth and drop the wheel's.
 
 HEADRICK = "Headrick 1997, Clock and Watch Escapement Mechanics, ch. 18"
-CHOSEN, ESTIMATE, USUAL = "chosen for this design", "estimate: not published", "usual in cylinder watches"
+USUAL = "usual in cylinder watches"
 
 
 @dataclass(frozen=True)
@@ -233,7 +233,7 @@ def wheel(shell: Shell) -> list[Loop]:
     return [
         *(tooth(shell).moved(math.radians(i * shell.pitch), (0.0, 0.0)) for i in range(shell.values.teeth)),
         Loop(tuple(edge for i in range(shell.values.teeth) for edge in _pillar(shell, i * shell.pitch)), "RIM"),
-        *(Loop(tuple(arms.window(i)), "RIM", hole=True) for i in range(ARMS)),
+        *arms.windows("RIM"),
         circle("RIM", (0.0, 0.0), BORE * d, hole=True),
     ]
 

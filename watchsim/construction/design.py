@@ -15,6 +15,7 @@ from watchsim.drawing.write import Sheet
 # What is a dimension of a design: which number may a designer choose, and within which limits?
 
 _KEY = "dimension"
+CHOSEN, ESTIMATE = "chosen for this design", "estimate: not published"  # sources of many dimensions
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import Conflict, Design, Impossible, dim
-from watchsim.construction.outline import along, arc_between, circle, fillet_chain, polar, turned
+from watchsim.construction.design import CHOSEN, ESTIMATE, Conflict, Design, Impossible, dim
+from watchsim.construction.outline import along, arc_between, circle, polar, rounded, turned
 from watchsim.construction.parts import Arms, BalanceWheel, Stone, ToothForm, balance_wheel, contour, tooth_and_gap
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
@@ -19,7 +19,7 @@ from watchsim.geometry.primitives import Arc, Edge, Line
 # Angles of notch, drop and letting go are the balance's, of the reach the wheel's.
 
 ABBOTT = "Abbott, The American Watchmaker and Jeweler (1893), Duplex Escapement"
-CHOSEN, ESTIMATE, USUAL = "chosen for this design", "estimate: not published", "usual in duplex watches"
+USUAL = "usual in duplex watches"
 
 
 @dataclass(frozen=True)
@@ -124,7 +124,7 @@ def wheel(points: DuplexPoints) -> list[Loop]:
     upright = impulse_tooth(points)
     return [
         contour(form, values.undercut, "RESTING", values.teeth),
-        *(Loop(tuple(arms.window(i)), "RESTING", hole=True) for i in range(ARMS)),
+        *arms.windows("RESTING"),
         circle("RESTING", (0.0, 0.0), BORE * s, hole=True),
         *(
             upright.moved(math.radians(points.waiting - points.rests + i * points.pitch), (0.0, 0.0))
@@ -152,9 +152,8 @@ def impulse_tooth(points: DuplexPoints) -> Loop:
     tip, height = (points.impulse_radius, 0.0), UPRIGHT * s
     front = along(tip, 180.0 - points.values.undercut, height / math.cos(math.radians(points.values.undercut)))
     back = along(polar(points.impulse_radius, 0.5), 180.0 - points.values.undercut - BACK, 1.15 * height)
-    corners = [front, tip, polar(points.impulse_radius, 0.5), back]
-    edges: list[Edge] = [Line(*corners[i], *corners[(i + 1) % 4]) for i in range(4)]
-    return Loop(tuple(fillet_chain(edges, [0.0, 0.0, 0.1 * height, 0.1 * height], closed=True)), "IMPULSE")
+    heel, foot = polar(points.impulse_radius, 0.5), 0.1 * height
+    return rounded("IMPULSE", [(front, foot), (tip, 0.0), (heel, 0.0), (back, foot)])
 
 
 def balance(points: DuplexPoints) -> list[Loop]:

@@ -7,15 +7,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import Conflict, Design, dim
-from watchsim.construction.outline import arc_between, circle, polar
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim
+from watchsim.construction.outline import arc_between, around, circle, polar
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Edge, Line
 
 # Which numbers does the designer of a Geneva drive choose?
-
-CHOSEN = "chosen for this design"
 
 
 @dataclass(frozen=True)
@@ -171,10 +169,9 @@ BORE_WHEEL = 0.2  # by the distance of the slots' bottoms from the axis
 def wheel(values: Geneva) -> list[Loop]:
     """The slotted wheel and its bore."""
     pitch = math.radians(2.0 * half_pitch(values))
-    part = Loop(tuple(sector(values)), "WHEEL")
-    edges = [edge for i in range(values.slots) for edge in part.moved(i * pitch, (0.0, 0.0)).edges]
+    outline = around("WHEEL", sector(values), (i * pitch for i in range(values.slots)))
     bore = BORE_WHEEL * (slot_bottom(values) - slot_half(values))
-    return [Loop(tuple(edges), "WHEEL"), circle("WHEEL", (0.0, 0.0), bore, hole=True)]
+    return [outline, circle("WHEEL", (0.0, 0.0), bore, hole=True)]
 
 
 def sector(values: Geneva) -> list[Edge]:

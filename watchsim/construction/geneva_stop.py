@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from watchsim.construction import geneva as of_drive
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import Conflict, Design, dim
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim
 from watchsim.construction.geneva import (
     BORE_WHEEL,
     Geneva,
@@ -27,7 +27,7 @@ from watchsim.geometry.loops import Loop
 
 # Which numbers does the designer of a Geneva stop-work choose?
 
-CHOSEN, USUAL = "chosen for this design", "usual in watches"
+USUAL = "usual in watches"
 
 
 @dataclass(frozen=True)

@@ -7,14 +7,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import Conflict, Design, dim
-from watchsim.construction.outline import circle, rounded
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim
+from watchsim.construction.outline import circle, polygon
 from watchsim.drawing.write import Sheet
-from watchsim.geometry.loops import Loop
 
 # Which numbers does the designer of a governor fly choose?
-
-CHOSEN = "chosen for this design"
 
 
 @dataclass(frozen=True)
@@ -90,11 +87,11 @@ def scene_text(values: Governor) -> str:
 def draw(values: Governor) -> dict[str, Sheet]:
     """Drum and fly: two vanes on a collar, seen along the axis."""
     far, half = values.reach, 0.5 * values.thickness
-    vanes = rounded([(-far, -half, 0.0), (far, -half, 0.0), (far, half, 0.0), (-far, half, 0.0)])
+    vanes = polygon("VANES", [(-far, -half), (far, -half), (far, half), (-far, half)])
     collar = max(0.1 * values.reach, values.thickness)
     return {
         "drum": Sheet((circle("DRUM", (0.0, 0.0), values.drum_radius),)),
-        "fly": Sheet((Loop(tuple(vanes), "VANES"), circle("COLLAR", (0.0, 0.0), collar))),
+        "fly": Sheet((vanes, circle("COLLAR", (0.0, 0.0), collar))),
     }
 
 

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from watchsim.construction.design import Conflict, Design, dim
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim
 from watchsim.construction.outline import arc_between, polar
 from watchsim.construction.parts import arc_through, gear_outline, gear_pair_scene, other_flank
 from watchsim.drawing.write import Sheet
@@ -14,8 +14,6 @@ from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Edge, Line, Point
 
 # Which numbers does the designer of a pair of involute gears choose?
-
-CHOSEN = "chosen for this design"
 
 
 @dataclass(frozen=True)

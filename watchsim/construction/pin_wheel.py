@@ -5,11 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import pairwise
 
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import Conflict, Design, dim
-from watchsim.construction.outline import angle_of, arc_between, circle, fillet_chain, polar, turned
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim
+from watchsim.construction.outline import angle_of, arc_between, circle, polar, polygon, rounded, turned
 from watchsim.construction.parts import Arms, bob_and_rod
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
@@ -19,7 +18,7 @@ from watchsim.geometry.primitives import Edge, Line, Point
 #
 # A tower clock's size. Angles of lock and lift are at the pendulum's pivot, of the drop at the wheel's.
 
-CHOSEN, GOODRICH = "chosen for this design", "Goodrich, The Modern Clock (1905), ch. IX"
+GOODRICH = "Goodrich, The Modern Clock (1905), ch. IX"
 AS_GRAHAM = "as usual with a dead-beat anchor"
 
 
@@ -186,7 +185,7 @@ def wheel(anchor: PinAnchor) -> list[Loop]:
     return [
         *(half_pin(anchor, i * 2.0 * anchor.half_pitch) for i in range(anchor.values.pins)),
         circle("RIM", (0.0, 0.0), outer),
-        *(Loop(tuple(arms.window(i)), "RIM", hole=True) for i in range(ARMS)),
+        *arms.windows("RIM"),
         circle("RIM", (0.0, 0.0), BORE * size, hole=True),
     ]
 
@@ -208,7 +207,7 @@ def pendulum(anchor: PinAnchor) -> list[Loop]:
         pallet(anchor, -1),
         arms(anchor),
         circle("ANCHOR", (0.0, 0.0), HOLE * size, hole=True),
-        Loop(tuple(Line(*rod[i], *rod[(i + 1) % 4]) for i in range(4)), "ROD"),
+        polygon("ROD", rod),
         circle("BOB", (0.0, low), values.bob_radius),
     ]
 
@@ -243,10 +242,7 @@ def arms(anchor: PinAnchor) -> Loop:
         (right[1], 0.4 * half),
         (right[0], 0.4 * half),
     ]
-    places = [place for place, _ in corners]
-    edges: list[Edge] = [Line(*a, *b) for a, b in pairwise([*places, places[0]])]
-    radii = [radius for _, radius in [*corners[1:], corners[0]]]
-    return Loop(tuple(fillet_chain(edges, radii, closed=True, yielding=True)), "ANCHOR")
+    return rounded("ANCHOR", corners, yielding=True)
 
 
 def _leg(anchor: PinAnchor, side: int, half: float) -> tuple[Point, Point]:

@@ -7,15 +7,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import Conflict, Design, dim
-from watchsim.construction.outline import along, angle_of, circle, polar, rounded
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim
+from watchsim.construction.outline import along, angle_of, circle, polar, polygon
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Point
 
 # Which numbers does the designer of a ratchet wheel and its click choose?
-
-CHOSEN = "chosen for this design"
 
 
 @dataclass(frozen=True)
@@ -90,18 +88,16 @@ FOOT = 3.0  # radius of the click about its pivot, in radii of its nose
 def wheel(values: Ratchet) -> list[Loop]:
     """Saw teeth, the first root at 0°; bore."""
     corners = []
-    for i in range(values.teeth):
-        turn = i * pitch(values)
-        corners.append((*polar(root(values)[0], turn), 0.0))
-        corners.append((*polar(values.tip_radius, turn + angle_of(tip(values))), 0.0))
-    return [Loop(tuple(rounded(corners)), "TEETH"), circle("TEETH", (0.0, 0.0), BORE * values.tip_radius, hole=True)]
+    for turn in (i * pitch(values) for i in range(values.teeth)):
+        corners += [polar(root(values)[0], turn), polar(values.tip_radius, turn + angle_of(tip(values)))]
+    return [polygon("TEETH", corners), circle("TEETH", (0.0, 0.0), BORE * values.tip_radius, hole=True)]
 
 
 def click(values: Ratchet) -> list[Loop]:
     """The nose to the left of the pivot; arm and foot touch nothing."""
     r, far, wide = values.nose_radius, -values.click_length, FOOT * values.nose_radius
-    arm = rounded([(far, -r, 0.0), (0.0, -wide, 0.0), (0.0, wide, 0.0), (far, r, 0.0)])
-    return [circle("NOSE", (far, 0.0), r), Loop(tuple(arm), "ARM"), circle("FOOT", (0.0, 0.0), wide)]
+    arm = polygon("ARM", [(far, -r), (0.0, -wide), (0.0, wide), (far, r)])
+    return [circle("NOSE", (far, 0.0), r), arm, circle("FOOT", (0.0, 0.0), wide)]
 
 
 # What does the scene of a ratchet wheel and its click say?

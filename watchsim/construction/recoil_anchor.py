@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from watchsim.construction import graham as checks
 from watchsim.construction import graham as texts
-from watchsim.construction.design import Conflict, Design, dim
-from watchsim.construction.graham import CHOSEN, Anchor, Graham, sheets
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim
+from watchsim.construction.graham import Anchor, Graham, sheets
 from watchsim.drawing.write import Sheet
 
 # Which numbers does the designer of a recoil anchor with its pendulum choose?

@@ -8,11 +8,10 @@ from dataclasses import dataclass
 
 from watchsim.construction import scene_builder as toml
 from watchsim.construction import swiss_lever as lever
-from watchsim.construction.design import Conflict, Design, Impossible, dim
-from watchsim.construction.outline import arc_between, circle, polar, rounded
-from watchsim.construction.swiss_lever import CLEAR, swiss, wheel_angle
+from watchsim.construction.design import CHOSEN, Conflict, Design, Impossible, dim
+from watchsim.construction.outline import arc_between, circle, polar, polygon
+from watchsim.construction.swiss_lever import CLEAR, ESTIMATE, SwissLever, swiss, wheel_angle
 from watchsim.construction.swiss_lever import draw as draw_lever
-from watchsim.construction.swiss_lever_outlines import CHOSEN, ESTIMATE, SwissLever
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Edge, Line, Point
@@ -146,7 +145,7 @@ def _pallet(inner: float, outer: float, first: float, last: float) -> Loop:
 def _prong(values: Remontoir, side: int) -> Loop:
     near, far = _slot(values), _outside(values)
     left, right = values.arm - PRONG * values.disc, values.arm + PRONG * values.disc
-    return _polygon("FORK", [(left, side * near), (right, side * near), (right, side * far), (left, side * far)][::side])
+    return polygon("FORK", [(left, side * near), (right, side * near), (right, side * far), (left, side * far)][::side])
 
 
 def _arms(values: Remontoir, radius: float, upper: float, lower: float) -> tuple[Loop, ...]:
@@ -156,7 +155,7 @@ def _arms(values: Remontoir, radius: float, upper: float, lower: float) -> tuple
     beam = [(-root, -hub), (neck, -hub), (fork, -far), (fork, far), (neck, hub), (-root, hub)]
     above = [polar(radius - half, upper - 23.0), polar(hub, 60.0), polar(hub, 180.0), polar(radius + half, upper - 15.0)]
     below = [polar(radius - half, lower + 15.0), polar(hub, 180.0), polar(hub, 300.0), polar(radius - half, lower + 23.0)]
-    return _polygon("ARM", beam), _polygon("UPPER", above), _polygon("LOWER", below)
+    return polygon("ARM", beam), polygon("UPPER", above), polygon("LOWER", below)
 
 
 def _slot(values: Remontoir) -> float:
@@ -166,10 +165,6 @@ def _slot(values: Remontoir) -> float:
 
 def _outside(values: Remontoir) -> float:
     return _slot(values) + WALL * values.disc
-
-
-def _polygon(layer: str, corners: list[Point]) -> Loop:
-    return Loop(tuple(rounded([(x, y, 0.0) for x, y in corners])), layer)
 
 
 # What does the scene of a remontoir before a Swiss lever say?

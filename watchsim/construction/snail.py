@@ -7,15 +7,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import Conflict, Design, dim
-from watchsim.construction.outline import along, angle_of, arc_between, circle, polar, rounded, turned
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim
+from watchsim.construction.outline import along, angle_of, arc_between, circle, polar, polygon, turned
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Edge, Line, Point
 
 # Which numbers does the designer of a snail and its rack choose?
-
-CHOSEN = "chosen for this design"
 
 
 @dataclass(frozen=True)
@@ -150,9 +148,8 @@ def rack(values: Snail) -> list[Loop]:
     half = BAR * values.pin_radius
     way = 180.0 - gathered(values)
     bar = [turned(corner, way) for corner in ((0.0, -half), (values.tail, -half), (values.tail, half), (0.0, half))]
-    tail = rounded([(*corner, 0.0) for corner in bar])
     pin = circle("PIN", polar(values.tail, way), values.pin_radius)
-    return [pin, Loop(tuple(tail), "TAIL"), _teeth(values), circle("FOOT", (0.0, 0.0), 2.0 * half)]
+    return [pin, polygon("TAIL", bar), _teeth(values), circle("FOOT", (0.0, 0.0), 2.0 * half)]
 
 
 def stop(values: Snail) -> list[Loop]:
@@ -172,7 +169,7 @@ def _teeth(values: Snail) -> Loop:
     inside, end = (1.0 - 4.0 * DEPTH) * outer, SPOKE - count * values.tooth
     narrow = SPOKE - math.degrees(3.0 * hub / inside)
     corners += [polar(inside, end), polar(inside, max(narrow, 0.5 * (SPOKE + end))), polar(hub, SPOKE - 45.0)]
-    return Loop(tuple(rounded([(*corner, 0.0) for corner in reversed(corners)])), "RACK")
+    return polygon("RACK", corners[::-1])
 
 
 # What does the scene of a snail and its rack say?

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 from watchsim.construction import scene_builder as toml
 from watchsim.construction.design import Design, dim
 from watchsim.construction.outline import rounded
-from watchsim.construction.swiss_lever import conflicts, parts, rest, swiss
+from watchsim.construction.swiss_lever import ESTIMATE, SwissLever, conflicts, parts, rest, swiss
 from watchsim.construction.swiss_lever import draw as draw_lever
-from watchsim.construction.swiss_lever_outlines import ESTIMATE, SwissLever
 from watchsim.drawing.write import Sheet
-from watchsim.geometry.loops import Loop
 
 # Which numbers does the designer of a tourbillon choose?
 
@@ -46,8 +45,8 @@ def scene_text(values: Tourbillon) -> str:
     wheel_y, lever_y = -design.balance_pivot[1], design.lever_pivot[1] - design.balance_pivot[1]
     poised = -(values.wheel_mass * wheel_y + values.lever_mass * lever_y) / values.carriage_mass
     turn = values.ratio * values.teeth * 7200.0 / values.frequency
-    carried = {"on": "carriage"}
-    more: dict[str, dict[str, object]] = {
+    carried: dict[str, Any] = {"on": "carriage"}
+    more: dict[str, dict[str, Any]] = {
         "wheel": {**carried, "mass": f"{values.wheel_mass:.15g} mg"},
         "lever": {**carried, "mass": f"{values.lever_mass:.15g} mg"},
         "balance": {
@@ -99,7 +98,7 @@ BRIDGE = (
 def draw(values: Tourbillon) -> dict[str, Sheet]:
     """The sheets of the lever, and the carriage about the balance's axis."""
     scale = swiss(values).balance_pivot[1]
-    bridge = Loop(tuple(rounded([(scale * x, scale * y, scale * radius) for x, y, radius in BRIDGE])), "BRIDGE")
+    bridge = rounded("BRIDGE", [((scale * x, scale * y), scale * radius) for x, y, radius in BRIDGE])
     return {**draw_lever(values), "carriage": Sheet((bridge,))}
 
 

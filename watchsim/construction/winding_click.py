@@ -9,16 +9,13 @@ from dataclasses import dataclass
 from watchsim.construction import ratchet
 from watchsim.construction import ratchet as saw
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import Conflict, Design, dim
-from watchsim.construction.outline import along, angle_of, circle, polar, rounded
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim
+from watchsim.construction.outline import along, angle_of, circle, polar, polygon
 from watchsim.construction.ratchet import Ratchet
 from watchsim.drawing.write import Sheet
-from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Point
 
 # Which numbers does the designer of a winding click with recoil choose?
-
-CHOSEN = "chosen for this design"
 
 
 @dataclass(frozen=True)
@@ -184,8 +181,8 @@ SHALLOWEST, STEEPEST = 0.1, 60.0  # of the depth; degrees of the click at the ba
 def draw(values: WindingClick) -> dict[str, Sheet]:
     """The wheel; the click with its nose below the pivot, arm and foot touch nothing."""
     r, low, wide = values.nose_radius, -values.click_length, FOOT * values.nose_radius
-    arm = rounded([(-r, low, 0.0), (r, low, 0.0), (wide, 0.0, 0.0), (-wide, 0.0, 0.0)])
-    click = [circle("NOSE", (0.0, low), r), Loop(tuple(arm), "ARM"), circle("FOOT", (0.0, 0.0), wide)]
+    arm = polygon("ARM", [(-r, low), (r, low), (wide, 0.0), (-wide, 0.0)])
+    click = [circle("NOSE", (0.0, low), r), arm, circle("FOOT", (0.0, 0.0), wide)]
     return {"wheel": Sheet(tuple(ratchet.wheel(teeth(values)))), "click": Sheet(tuple(click))}
 
 
