@@ -1,4 +1,4 @@
-"""The cam as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Eccentric cam with its follower: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -10,8 +10,6 @@ from watchsim.construction import scene_builder as toml
 from watchsim.construction.design import CHOSEN, Conflict, Design, dim
 from watchsim.construction.outline import circle, polygon
 from watchsim.drawing.write import Sheet
-
-# Which numbers does the designer of an eccentric cam and its follower choose?
 
 
 @dataclass(frozen=True)
@@ -52,8 +50,6 @@ def leaves_at(values: Cam) -> float:
     return math.degrees(math.sqrt(press / (1e-3 * values.mass * e * (1.0 + values.eccentricity / reach))))
 
 
-# What does the scene of an eccentric cam say?
-
 TURNS = 3.0
 
 
@@ -84,8 +80,6 @@ def scene_text(values: Cam) -> str:
         toml.run(f"{round(TURNS * 360.0 / values.speed, 9):.15g} s"),
     )
 
-
-# What makes the eccentric cam with its follower a design?
 
 BORE = 0.12  # by the radius of the cam
 SHAFT = 6.0  # length of the follower in radii of its end

@@ -1,4 +1,4 @@
-"""The coaxial as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Co-axial escapement with its balance: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -426,8 +426,6 @@ def _table_radius(points: Points) -> float:
     return TABLE_RADIUS * points.stone_reach / 1.0125
 
 
-# What does the scene of a co-axial escapement say?
-
 CLEAR = 1e-4  # degrees by which lever and wheel stand off what they rest on
 
 WORDS = """\
@@ -481,17 +479,12 @@ def scene_text(values: Coaxial) -> str:
     )
 
 
-# Which sheets does a co-axial escapement need?
-
-
 def sheets(values: Coaxial) -> dict[str, Sheet]:
     """File name without ending -> the part. ValueError where a fillet does not fit."""
     points = Points(values)
     parts = {"escape_wheel": wheel(points), "lever": lever(points), "roller": roller(points), "banking": banking(points)}
     return {name: Sheet(tuple(loops)) for name, loops in parts.items()}
 
-
-# Which dimensions of a co-axial escapement do not go together?
 
 INSIDE = 1.0  # degrees of the balance by which the roller stone must be inside the overlap when the wheel is let go
 FREE = 0.75  # degrees of the wheel by which a waiting tooth must stand outside an overlap
@@ -550,7 +543,5 @@ def guard_freedom(points: Points) -> float:
     cosine = (y * y + d * d - reach * reach) / (2.0 * y * d)
     return points.bank - math.degrees(math.acos(min(1.0, cosine)))
 
-
-# What makes the co-axial escapement a design?
 
 DESIGN = Design("coaxial", "Co-axial escapement with its balance", Coaxial, sheets, scene_text, conflicts)

@@ -1,4 +1,4 @@
-"""The cylinder as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Cylinder escapement of a watch with its balance: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -267,8 +267,6 @@ def wheel_of(shell: Shell) -> BalanceWheel:
     return balance_wheel(shell.values.balance_inertia, shell.outer, 0.3 * shell.inner, BALANCE_ARMS)
 
 
-# Which dimensions of a cylinder escapement do not go together?
-
 LEAST_WALL = 0.04  # of the outer radius
 PARTS = 20  # of an edge
 FINE_CONFLICTS = 1e-9  # of a radius
@@ -335,8 +333,6 @@ def _distances(made: Shell, bearing: float) -> list[float]:
     return [math.dist(edge.point(i / PARTS), made.balance) for edge in edges for i in range(PARTS + 1)]
 
 
-# What does the scene of a cylinder escapement say?
-
 CLEAR = 1e-4  # degrees by which the tooth stands off the shell at the start
 
 WORDS = """\
@@ -371,9 +367,6 @@ def scene_text(values: Cylinder) -> str:
         toml.run("20 s", "1e-12"),
         toml.timegrapher(f"{values.lift:.15g}°"),
     )
-
-
-# What makes the cylinder escapement a design?
 
 
 def draw(values: Cylinder) -> dict[str, Sheet]:

@@ -1,4 +1,4 @@
-"""The detent as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Detent escapement of a marine chronometer with its balance: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -247,8 +247,6 @@ def banking(points: Points) -> list[Loop]:
     return [circle("SCREW", (x + points.pivot[0], y + points.pivot[1]), BANK_RADIUS * s)]
 
 
-# What does the scene of a detent escapement say?
-
 CLEAR = 1e-4  # degrees by which tooth and passing spring stand off what they rest on at the start
 
 WORDS = """\
@@ -323,9 +321,6 @@ def scene_text(values: Detent) -> str:
     )
 
 
-# Which sheets does a detent escapement need?
-
-
 def sheets(values: Detent) -> dict[str, Sheet]:
     """File name without ending -> the part. ValueError where a fillet does not fit."""
     points = Points(values)
@@ -338,8 +333,6 @@ def sheets(values: Detent) -> dict[str, Sheet]:
     }
     return {name: Sheet(tuple(loops)) for name, loops in parts.items()}
 
-
-# Which dimensions of a detent escapement do not go together?
 
 THIN = 1.3  # of the staff's radius: the least that holds the discharging stone
 FREE = 0.5  # degrees of the wheel by which a waiting tooth must stand outside the overlap
@@ -368,7 +361,5 @@ def conflicts(values: Detent) -> Iterator[Conflict]:
         return
     sheets(values)
 
-
-# What makes the detent escapement a design?
 
 DESIGN = Design("detent", "Detent escapement of a marine chronometer with its balance", Detent, sheets, scene_text, conflicts)

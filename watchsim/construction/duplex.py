@@ -1,4 +1,4 @@
-"""The duplex as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Duplex escapement of a watch with its balance: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -188,8 +188,6 @@ def wheel_of(points: DuplexPoints) -> BalanceWheel:
     return balance_wheel(points.values.balance_inertia, points.pallet, 0.45 * points.roller, BALANCE_ARMS)
 
 
-# Which dimensions of a duplex escapement do not go together?
-
 FREE = 0.2  # degrees of the wheel by which an impulse tooth stands outside the overlap until the notch has let go
 LEAST_FLOOR = 2.0  # degrees
 LEAST_IMPULSE = 8.0  # degrees of the balance
@@ -233,8 +231,6 @@ def conflicts(values: Duplex) -> Iterator[Conflict]:
         yield Conflict("start", f"must be at most {round_again:.4g}°: farther out the notch comes round to the tooth again")
 
 
-# What does the scene of a duplex escapement say?
-
 OFF = 1e-4  # degrees by which the tooth stands off the roller at the start
 
 WORDS = """\
@@ -269,9 +265,6 @@ def scene_text(values: Duplex) -> str:
         toml.run("60 s", "1e-12"),
         toml.timegrapher(toml.Noted(f"{lift:.4g}°", "from the notch's taking of a tooth to the end of the impulse", 11)),
     )
-
-
-# What makes the duplex escapement a design?
 
 
 def draw(values: Duplex) -> dict[str, Sheet]:

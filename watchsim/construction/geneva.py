@@ -1,4 +1,4 @@
-"""The geneva as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Geneva drive with a locking disc: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -12,8 +12,6 @@ from watchsim.construction.outline import arc_between, around, circle, polar
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Edge, Line
-
-# Which numbers does the designer of a Geneva drive choose?
 
 
 @dataclass(frozen=True)
@@ -79,8 +77,6 @@ def mouth_half(values: Geneva) -> float:
     return math.degrees(math.asin(slot_half(values) / wheel_radius(values)))
 
 
-# Which dimensions of a Geneva drive do not go together?
-
 LEAST_RIM = 0.02  # of the wheel's radius, that must stay between slot and hollow
 
 
@@ -131,8 +127,6 @@ def disc(values: Geneva) -> Loop:
     return Loop(tuple(edges), "DISC")
 
 
-# What does the scene of a Geneva drive say?
-
 TURNS = 2.25  # of the driver, which starts square to the line of centres: the pin then stands deepest in the third slot
 
 
@@ -161,8 +155,6 @@ def scene_text(values: Geneva) -> str:
     )
 
 
-# What is the outline of the driven wheel?
-
 BORE_WHEEL = 0.2  # by the distance of the slots' bottoms from the axis
 
 
@@ -188,9 +180,6 @@ def sector(values: Geneva) -> list[Edge]:
         arc_between(first, last, polar(centre_distance(values), middle), False),
         arc_between(last, polar(rim, 2.0 * middle - mouth), (0.0, 0.0), True),
     ]
-
-
-# What makes the Geneva drive a design?
 
 
 def draw(values: Geneva) -> dict[str, Sheet]:

@@ -1,4 +1,4 @@
-"""The governor as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Governor fly of a striking train: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -10,8 +10,6 @@ from watchsim.construction import scene_builder as toml
 from watchsim.construction.design import CHOSEN, Conflict, Design, dim
 from watchsim.construction.outline import circle, polygon
 from watchsim.drawing.write import Sheet
-
-# Which numbers does the designer of a governor fly choose?
 
 
 @dataclass(frozen=True)
@@ -32,8 +30,6 @@ class Governor:
     )
     air: float = dim(1.2, "kg/m³", 0.1, 5.0, "density", "at 20 °C and sea level")
 
-
-# What does the scene of a governor fly say?
 
 WORDS = """\
 The governor of a striking train: a weight on a drum drives a fly through gears, and the air on its vanes takes what that
@@ -79,9 +75,6 @@ def scene_text(values: Governor) -> str:
         toml.table("[[damping]]", "vanes in air: torque c w²", body="fly", quadratic=air),
         toml.table("[run]", duration=f"{SETTLED * time_constant(values):.2g} s"),
     )
-
-
-# What makes the governor fly of a striking train a design?
 
 
 def draw(values: Governor) -> dict[str, Sheet]:

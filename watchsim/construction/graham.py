@@ -1,4 +1,4 @@
-"""The graham as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Graham's dead-beat escapement with its pendulum: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -199,8 +199,6 @@ def arms(anchor: Anchor) -> Loop:
     return Loop(tuple(edges), "ANCHOR")
 
 
-# What does the scene of an anchor escapement with a pendulum say?
-
 CLEAR = 1e-5  # degrees by which the tooth stands off the pallet at the start
 BRASS = 8400.0  # kg/m³
 
@@ -230,8 +228,6 @@ def scene_text(anchor: Anchor, name: str) -> str:
         toml.timegrapher(f"{values.lift!r}°"),
     )
 
-
-# What is the outline of an escape wheel with pointed teeth?
 
 DEPTH, RIM, HUB_WHEEL, BORE_WHEEL = 0.2, 0.1, 0.2, 0.06  # by the radius of the wheel
 ARMS, ARM = 4, 0.05
@@ -296,8 +292,6 @@ def _window(start: float, inner: float, outer: float, half: float) -> Loop:
     return Loop(tuple(edges), "TEETH", hole=True)
 
 
-# Which dimensions of a dead-beat or recoil escapement do not go together?
-
 LEAST_WIDTH, LEAST_GAP, MOST_SPAN = 0.2, 0.3, 80.0
 
 
@@ -322,9 +316,6 @@ def conflicts(anchor: Anchor) -> Iterator[Conflict]:
         yield Conflict("back", f"must be more than the undercut of {values.undercut:g}°, else a tooth is thinner at its foot")
     elif gap(values) < LEAST_GAP:
         yield Conflict("back", f"leaves {gap(values):.3g}° between two teeth; {LEAST_GAP:g}° are needed")
-
-
-# What makes the dead-beat escapement a design?
 
 
 def sheets(anchor: Anchor) -> dict[str, Sheet]:

@@ -1,4 +1,4 @@
-"""The grasshopper as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Grasshopper escapement with its pendulum: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -13,8 +13,6 @@ from watchsim.construction.parts import Arms
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Point
-
-# Which numbers does the designer of a grasshopper escapement choose?
 
 
 @dataclass(frozen=True)
@@ -217,8 +215,6 @@ def _bar(start: tuple[float, float], end: tuple[float, float], half: float, laye
     return polygon(layer, [(x0 - nx, y0 - ny), (x1 - nx, y1 - ny), (x1 + nx, y1 + ny), (x0 + nx, y0 + ny)])
 
 
-# What does the scene of a grasshopper escapement say?
-
 OFF_PALLET, OFF_STOPS = 1e-3, 1e-4  # degrees, at the start: the tooth off its pallet, the pallets off their stops
 
 
@@ -274,8 +270,6 @@ def scene_text(made: Points) -> str:
         toml.run("60 s", "1e-12"),
     )
 
-
-# What makes the grasshopper escapement a design?
 
 NARROWEST, WIDEST = 50.0, 130.0  # degrees between the pallets, seen from the wheel
 HIGHEST = 0.8  # of a pitch: height of a tooth

@@ -1,4 +1,4 @@
-"""The jumper as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Calendar star with jumper and finger: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -12,8 +12,6 @@ from watchsim.construction.outline import circle, polar, polygon, rounded
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Point
-
-# Which numbers does the designer of a calendar star and its jumper choose?
 
 
 @dataclass(frozen=True)
@@ -85,8 +83,6 @@ def finger_direction(values: Jumper) -> float:
     return tooth + half_push(values) - wait
 
 
-# Which dimensions of a star and its jumper do not go together?
-
 LEAST_ROOT = 0.2  # of the tip radius
 NARROWEST = 15.0  # degrees between a flank and the radius: the beak would jam
 
@@ -112,8 +108,6 @@ def conflicts(values: Jumper) -> Iterator[Conflict]:
     if finger_distance(values) - values.crank - values.pin_radius <= root_radius(values):
         yield Conflict("crank", "the pin would run into the roots of the star: a longer crank comes less deep")
 
-
-# What are the outlines of star, jumper and finger?
 
 HUB, BORE = 0.45, 0.15  # of the star's root radius
 BAR = 0.5  # half the width of jumper and finger, in radii of beak and pin
@@ -146,8 +140,6 @@ def finger(values: Jumper) -> list[Loop]:
     pin = circle("PIN", (values.crank, 0.0), values.pin_radius)
     return [pin, arm, circle("HUB", (0.0, 0.0), 2.0 * values.pin_radius)]
 
-
-# What does the scene of a star and its jumper say?
 
 TURNS = 2.0
 
@@ -193,9 +185,6 @@ def scene_text(values: Jumper) -> str:
         toml.contacts(values, "finger.PIN star.STAR", "jumper.BEAK star.STAR"),
         toml.run(f"{duration:.15g} s"),
     )
-
-
-# What makes the calendar star with its jumper a design?
 
 
 def draw(values: Jumper) -> dict[str, Sheet]:

@@ -229,9 +229,6 @@ def hollow_back(back: Point, radius: float, root: float) -> tuple[Edge, Point]:
     return arc_between(back, polar(root, bearing), polar(reach, bearing), False), polar(root, bearing)
 
 
-# What does the scene of two gears in mesh say?
-
-
 def gear_pair_scene(values: Values, heading: str, title: str, distance: float) -> str:
     """The text of scene.toml: both at rest, in the middle of the play; `distance` of the axes, mm."""
     pinion = (180.0 + 180.0 / values.pinion_teeth) % (360.0 / values.pinion_teeth)
@@ -257,9 +254,6 @@ def gear_pair_scene(values: Values, heading: str, title: str, distance: float) -
         toml.contacts(values, "wheel.TEETH pinion.TEETH"),
         toml.run("2 s", "1e-10"),
     )
-
-
-# What does the scene of a clock say of its pendulum?
 
 
 def bob_and_rod(values: Values, bob: float, thickness: float) -> tuple[str, str]:

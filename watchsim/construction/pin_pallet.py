@@ -1,4 +1,4 @@
-"""The pin pallet as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Pin-pallet (Roskopf) lever escapement with its balance: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -274,8 +274,6 @@ def _from_back(design: PinLever, centre: Point) -> float:
     return math.copysign(math.dist(centre, nearest), beyond)
 
 
-# Which dimensions of a pin-pallet escapement do not go together?
-
 LEAST_TOOTH, LEAST_GAP, LEAST_RISE = 2.0, 1.0, 3.0  # degrees
 SPANS = (18.0, 50.0)  # degrees, half of what the pins embrace
 STEEPEST = 50.0  # degrees of an impulse face from the wheel's rim
@@ -404,8 +402,6 @@ def _beside(point: Point, way: Point, ahead: float, left: float) -> Point:
     return (point[0] + ahead * way[0] - left * way[1], point[1] + ahead * way[1] + left * way[0])
 
 
-# What does the scene of a pin-pallet escapement say?
-
 CLEAR = 1e-4  # degrees by which lever and wheel stand off what they rest on
 
 
@@ -444,9 +440,6 @@ def scene_text(values: PinPallet) -> str:
         toml.torque("wheel", f"{-values.torque!r} µN·m"),
         rest(values, "wheel.TEETH lever.PALLETS"),
     )
-
-
-# What makes the pin-pallet escapement a design?
 
 
 def draw(values: PinPallet) -> dict[str, Sheet]:

@@ -1,4 +1,4 @@
-"""The pin wheel as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Pin-wheel escapement of a tower clock with its pendulum: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -110,8 +110,6 @@ class PinAnchor:
         edge = polar(self.values.pin_circle - side * self.pin, self.locked(side) - self.driven)
         return locking, self.from_pivot(edge, -side * self.released)
 
-
-# Which dimensions of a pin-wheel escapement do not go together?
 
 LEAST_DRIVEN = 1.0  # degrees of the wheel
 SLOPES = (20.0, 80.0)  # degrees of an impulse face from the resting face
@@ -253,8 +251,6 @@ def _leg(anchor: PinAnchor, side: int, half: float) -> tuple[Point, Point]:
     return polar(end, foot - side * 1.5 * beside), polar(end, foot + side * 0.5 * beside)
 
 
-# What does the scene of a pin-wheel escapement say?
-
 CLEAR = 1e-5  # degrees by which the pin stands off the pallet at the start
 IRON = 7200.0  # kg/m³
 
@@ -285,9 +281,6 @@ def scene_text(values: PinWheel) -> str:
         toml.run("60 s", "1e-12"),
         toml.timegrapher(f"{values.lift!r}°"),
     )
-
-
-# What makes the pin-wheel escapement a design?
 
 
 def draw(values: PinWheel) -> dict[str, Sheet]:

@@ -1,4 +1,4 @@
-"""The ratchet as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Ratchet wheel with its click: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -12,8 +12,6 @@ from watchsim.construction.outline import along, angle_of, circle, polar, polygo
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Point
-
-# Which numbers does the designer of a ratchet wheel and its click choose?
 
 
 @dataclass(frozen=True)
@@ -79,8 +77,6 @@ def pivot(values: Ratchet) -> Point:
     return along(nose(values), -values.click_angle, values.click_length)
 
 
-# What are the outlines of a ratchet wheel and its click?
-
 BORE = 0.15  # of the tip radius
 FOOT = 3.0  # radius of the click about its pivot, in radii of its nose
 
@@ -99,8 +95,6 @@ def click(values: Ratchet) -> list[Loop]:
     arm = polygon("ARM", [(far, -r), (0.0, -wide), (0.0, wide), (far, r)])
     return [circle("NOSE", (far, 0.0), r), arm, circle("FOOT", (0.0, 0.0), wide)]
 
-
-# What does the scene of a ratchet wheel and its click say?
 
 WOUND = 0.35  # rad of the click's spring at rest: it hardly weakens as the click is lifted
 
@@ -146,8 +140,6 @@ def scene_text(values: Ratchet) -> str:
         toml.run("0.5 s"),
     )
 
-
-# What makes the ratchet wheel with its click a design?
 
 NARROWEST = 20.0  # degrees
 

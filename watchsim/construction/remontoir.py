@@ -1,4 +1,4 @@
-"""The remontoir as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Remontoir before a Swiss lever: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -15,8 +15,6 @@ from watchsim.construction.swiss_lever import draw as draw_lever
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Edge, Line, Point
-
-# Which numbers does the designer of a remontoir before a Swiss lever choose?
 
 
 @dataclass(frozen=True)
@@ -167,8 +165,6 @@ def _outside(values: Remontoir) -> float:
     return _slot(values) + WALL * values.disc
 
 
-# What does the scene of a remontoir before a Swiss lever say?
-
 WORDS = """\
 A remontoir before a Swiss lever: the train does not drive the escape wheel but winds a weak spring on its arbor. An eccentric
 disc on the escape wheel leads a stop lever; twice in a turn it lets a tooth of the stop wheel go, and the train winds the
@@ -241,8 +237,6 @@ def scene_text(values: Remontoir) -> str:
         lever.rest(values),
     )
 
-
-# What makes a remontoir before a Swiss lever a design?
 
 SURE, SPARE = 1.5, 1.1  # times what lets a tooth go, and times what winds the spring
 

@@ -1,4 +1,4 @@
-"""The snail as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Snail of a striking train with its rack: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -12,8 +12,6 @@ from watchsim.construction.outline import along, angle_of, arc_between, circle, 
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Edge, Line, Point
-
-# Which numbers does the designer of a snail and its rack choose?
 
 
 @dataclass(frozen=True)
@@ -121,8 +119,6 @@ def _beside(values: Snail, step: int) -> float:
     return math.degrees(math.asin(values.pin_radius / math.hypot(*pin(values, step))))
 
 
-# What are the outlines of a snail, its rack and the stop of the rack?
-
 BORE = 0.3  # of the lowest step's radius
 BAR = 1.5  # half the width of the tail in radii of its pin
 RACK, DEPTH, SPOKE = 0.9, 0.04, 25.0  # radius of the rack and depth of its teeth by the tail; degrees of the rack's first tooth
@@ -171,8 +167,6 @@ def _teeth(values: Snail) -> Loop:
     corners += [polar(inside, end), polar(inside, max(narrow, 0.5 * (SPOKE + end))), polar(hub, SPOKE - 45.0)]
     return polygon("RACK", corners[::-1])
 
-
-# What does the scene of a snail and its rack say?
 
 SUDDEN = 1e-6  # s: over which the rack is let go
 END = 0.58  # of the last hour: the rack lies on the lowest step
@@ -226,8 +220,6 @@ def scene_text(values: Snail) -> str:
         toml.run(f"{round((values.steps - 1 + END) * values.hour, 9)!r} s"),
     )
 
-
-# What makes the snail with its rack a design?
 
 WIDEST = 140.0  # degrees of the tail to the line of centres, gathered up
 QUIET = 0.25  # of the time on a step that the rack may take to fall there

@@ -337,8 +337,6 @@ def _radii_and_angles(edges: Sequence[Edge]) -> tuple[NDArray[np.float64], NDArr
     return radii[order], angles[order]
 
 
-# Which dimensions of a Swiss lever do not go together?
-
 LEAST_STONE, LEAST_GAP, LEAST_LIFT = 0.8, 1.0, 0.2  # degrees
 SPANS = (15.0, 55.0)  # degrees, half of what the pallets embrace
 WHEELS = (0.25, 1.2)  # tip radius by centre distance of lever and balance
@@ -441,8 +439,6 @@ def _horn_arc(design: Swiss) -> float:
     return (angle_of(end, centre) - angle_of(mouth, centre) + 180.0) % 360.0 - 180.0
 
 
-# What does the scene of a Swiss lever say?
-
 CLEAR = 1e-4  # degrees by which lever and wheel stand off what they rest on
 NO_MORE: Mapping[str, Mapping[str, Any]] = MappingProxyType({})
 
@@ -525,9 +521,6 @@ def wheel_angle(design: Swiss) -> float:
     return (toe + pitch / 2.0) % pitch - pitch / 2.0
 
 
-# Which sheets does a Swiss lever escapement need?
-
-
 def sheets(swiss: Swiss, inertia: float = INERTIA) -> dict[str, Sheet]:
     """File name without ending -> the part; the rim is that of a balance of `inertia` (mg·cm²).
 
@@ -535,9 +528,6 @@ def sheets(swiss: Swiss, inertia: float = INERTIA) -> dict[str, Sheet]:
     """
     parts = {"escape_wheel": wheel(swiss), "lever": lever(swiss), "roller": roller(swiss, inertia), "banking": banking(swiss)}
     return {name: Sheet(tuple(loops)) for name, loops in parts.items()}
-
-
-# What makes the Swiss lever a design?
 
 
 def draw(values: SwissLever) -> dict[str, Sheet]:

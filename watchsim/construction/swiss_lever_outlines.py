@@ -379,8 +379,6 @@ def tooth_gap(design: Swiss) -> float:
     return (ahead + 180.0) % 360.0 - 180.0
 
 
-# What is the outline of the Swiss lever's lever?
-
 STONE_LENGTH, STONE_EDGE = 0.70, 0.03
 EXPOSED = 0.33  # length of a stone outside its slot
 SHELLAC = 0.006  # gap between stone and slot

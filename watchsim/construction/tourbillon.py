@@ -1,4 +1,4 @@
-"""The tourbillon as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Swiss lever on the carriage of a tourbillon: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -11,8 +11,6 @@ from watchsim.construction.outline import rounded
 from watchsim.construction.swiss_lever import ESTIMATE, SwissLever, conflicts, parts, rest, swiss
 from watchsim.construction.swiss_lever import draw as draw_lever
 from watchsim.drawing.write import Sheet
-
-# Which numbers does the designer of a tourbillon choose?
 
 
 @dataclass(frozen=True)
@@ -30,8 +28,6 @@ class Tourbillon(SwissLever):
     )
     gravity: float = dim(9.81, "m/s²", 0.0, 20.0, "in the plane: the watch stands upright; 0: it lies flat", "mean on earth")
 
-
-# What does the scene of a tourbillon say?
 
 WORDS = """\
 A tourbillon: a Swiss lever on a carriage, the balance on its axis. The escape pinion rolls round the fixed fourth wheel, of
@@ -85,8 +81,6 @@ def scene_text(values: Tourbillon) -> str:
         rest(values, tolerance="1e-11"),
     )
 
-
-# What makes a tourbillon a design?
 
 # Shares of the distance from wheel to balance, with each corner's radius: a foot under the wheel, two arms over the balance.
 BRIDGE = (

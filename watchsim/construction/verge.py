@@ -1,4 +1,4 @@
-"""The verge as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Verge escapement with a foliot: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -13,8 +13,6 @@ from watchsim.construction.outline import circle, polygon, rounded
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Point
-
-# Which numbers does the designer of a verge escapement choose?
 
 USUAL = "usual: 90° to 110° (Britten, The Watch and Clock Maker's Handbook)"
 
@@ -83,8 +81,6 @@ def start(values: Verge) -> float:
     """Where a tooth tip of the near side stands at the start, just off the first flag, the verge in the middle."""
     return depth(values) * math.tan(math.radians(0.5 * values.flag_angle)) - 1e-3 * pitch(values)
 
-
-# What are the outlines of a verge, and of the two sides of its crown wheel?
 
 AHEAD = 2  # teeth that have passed already
 STAFF = 0.45  # radius of the verge's staff, in depths
@@ -165,9 +161,6 @@ def _flag(values: Verge, layer: str, angle: float, side: float) -> Loop:
     return _closed([(side * (c * x - s * y), s * x + c * y) for x, y in points], layer)
 
 
-# What does the scene of a verge escapement say?
-
-
 def scene_text(values: Verge) -> str:
     """The text of scene.toml: the verge begins at rest in the middle, a tooth of the near side at its flag."""
     words, rim = "A verge escapement with a foliot, drawn to these dimensions:", f"{values.wheel_radius:.15g} mm/rad"
@@ -203,8 +196,6 @@ def scene_text(values: Verge) -> str:
         toml.run("20 s", "1e-12"),
     )
 
-
-# What makes the verge escapement a design?
 
 STEEPEST = 80.0  # degrees of a flag against the wheel's axis when it lets go
 NARROWEST = 3.0  # degrees of a tooth
