@@ -1,4 +1,4 @@
-"""The cam as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Eccentric cam with its follower: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -7,14 +7,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import Conflict, Design, dim
-from watchsim.construction.outline import circle, rounded
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim
+from watchsim.construction.outline import circle, polygon
 from watchsim.drawing.write import Sheet
-from watchsim.geometry.loops import Loop
-
-# Which numbers does the designer of an eccentric cam and its follower choose?
-
-CHOSEN = "chosen for this design"
 
 
 @dataclass(frozen=True)
@@ -55,8 +50,6 @@ def leaves_at(values: Cam) -> float:
     return math.degrees(math.sqrt(press / (1e-3 * values.mass * e * (1.0 + values.eccentricity / reach))))
 
 
-# What does the scene of an eccentric cam say?
-
 TURNS = 3.0
 
 
@@ -88,8 +81,6 @@ def scene_text(values: Cam) -> str:
     )
 
 
-# What makes the eccentric cam with its follower a design?
-
 BORE = 0.12  # by the radius of the cam
 SHAFT = 6.0  # length of the follower in radii of its end
 
@@ -99,8 +90,8 @@ def draw(values: Cam) -> dict[str, Sheet]:
     bore = circle("CAM", (0.0, 0.0), BORE * (values.radius - values.eccentricity), hole=True)
     cam = [circle("CAM", (0.0, -values.eccentricity), values.radius), bore]
     half, top = 0.6 * values.roller_radius, SHAFT * values.roller_radius
-    shaft = rounded([(half, 0.0, 0.0), (half, top, 0.0), (-half, top, 0.0), (-half, 0.0, 0.0)])
-    follower = [circle("END", (0.0, 0.0), values.roller_radius), Loop(tuple(shaft), "SHAFT")]
+    shaft = polygon("SHAFT", [(half, 0.0), (half, top), (-half, top), (-half, 0.0)])
+    follower = [circle("END", (0.0, 0.0), values.roller_radius), shaft]
     return {"cam": Sheet(tuple(cam)), "follower": Sheet(tuple(follower))}
 
 

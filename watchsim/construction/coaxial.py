@@ -1,19 +1,20 @@
-"""The coaxial as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Co-axial escapement with its balance: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
-from itertools import pairwise
+from dataclasses import dataclass, replace
 
+from watchsim.construction import lever_parts
 from watchsim.construction import scene_builder as toml
 from watchsim.construction.design import Conflict, Design, dim
-from watchsim.construction.outline import along, angle_of, arc_between, circle, fillet_chain, polar, turned
+from watchsim.construction.lever_parts import guard, horn_radius, impulse_pin, safety_roller
+from watchsim.construction.outline import along, angle_of, circle, polar, rounded, to_circle, turned
 from watchsim.construction.parts import Arms, BalanceWheel, Stone, ToothForm, balance_wheel, contour
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
-from watchsim.geometry.primitives import Arc, Edge, Line, Point
+from watchsim.geometry.primitives import Point
 
 # Which dimensions does a co-axial escapement have?
 #
@@ -154,13 +155,7 @@ class Points:
         """Polar angle of the tip that a locking face holds, lever at `lever` degrees to its side."""
         corner = self.in_movement(self.locking_corner(side), side * lever)
         direction = self.face_direction(side) + side * lever
-        return angle_of(along(corner, direction, self._to_tip_circle(corner, direction)))
-
-    def _to_tip_circle(self, start: Point, direction: float) -> float:
-        """How far along `direction` the tip circle is crossed from inside."""
-        ux, uy = cosine(direction), sine(direction)
-        ahead = start[0] * ux + start[1] * uy
-        return -ahead + math.sqrt(ahead**2 + self.values.tip_radius**2 - start[0] ** 2 - start[1] ** 2)
+        return angle_of(along(corner, direction, to_circle(corner, direction, self.values.tip_radius)))
 
 
 # What is the outline of a co-axial escape wheel?
@@ -180,7 +175,7 @@ def wheel(points: Points) -> list[Loop]:
     large = ToothForm(points.values.tip_radius, 1.5 * s, 0.02 * s, 0.42 * s, 41.0, 0.62 * s, 0.12 * s)
     small = ToothForm(points.small_radius, 0.68 * points.small_radius, 0.015 * s, 0.15 * s, 42.0, 0.25 * s, 0.05 * s)
     arms = Arms(ARMS, ARM_WIDTH * s, HUB_RADIUS * s, RIM_INNER * s, WINDOW_FILLET * s)
-    windows = [Loop(tuple(arms.window(i)), "TEETH", hole=True) for i in range(arms.number)]
+    windows = arms.windows("TEETH")
     bores = [circle(layer, (0.0, 0.0), BORE_RADIUS * s, hole=True) for layer in ("TEETH", "SMALL_TEETH")]
     undercut = points.values.undercut
     second = contour(small, undercut, "SMALL_TEETH", TEETH).moved(math.radians(points.small_turn), (0.0, 0.0))
@@ -209,11 +204,7 @@ def locking_stone(points: Points, side: int) -> Stone:
     straight = Stone(tip, face, LOCKING_WIDTH * s, LOCKING_LENGTH * s, 0.0)
     x, y = points.in_movement(straight.at(0.0, straight.width), side * points.unlocked)
     turn = face + side * points.unlocked
-    ux, uy = cosine(turn), sine(turn)
-    ahead = x * ux + y * uy
-    clear = points.values.tip_radius + UNDER * s
-    relief = -ahead + math.sqrt(ahead**2 + clear**2 - x**2 - y**2)
-    return Stone(tip, face, straight.width, straight.length, relief)
+    return replace(straight, relief=to_circle((x, y), turn, points.values.tip_radius + UNDER * s))
 
 
 def lever_stone(points: Points) -> Stone:
@@ -264,9 +255,8 @@ class Fork:
         radius = points.values.pin_radius
         self.pin_edge = PIN_EDGE * s
         self.pin_centre = points.pin_reach + (2.0 * PIN_GROUND - 1.0) * radius
-        height = points.pin_reach - self.pin_edge
-        half = math.sqrt((radius - self.pin_edge) ** 2 - (height - self.pin_centre) ** 2)
-        self.horn_radius = math.hypot(half, height) + self.pin_edge + points.values.horn_clearance
+        clearance = points.values.horn_clearance
+        self.horn_radius = horn_radius(points.pin_reach, self.pin_centre, radius, self.pin_edge, clearance)
         """Of the horns about the balance's centre, lever on the bank: past the farthest point of the pin's edge."""
 
     def balance_from_bank(self, side: int) -> Point:
@@ -281,59 +271,20 @@ class Fork:
 
 
 def fork_outline(fork: Fork) -> Loop:
-    """The fork, counter-clockwise from the left end of the neck."""
-    right = _right_half(fork)
-    neck, half, bottom = fork.neck, fork.slot_half, fork.slot_bottom
-    edges: list[Edge] = [Line(-fork.stem_half, neck, fork.stem_half, neck), *[edge for edge, _ in right]]
-    edges += [Line(half, bottom, -half, bottom), *[_mirrored(edge) for edge, _ in reversed(right)]]
-    radii = [radius for _, radius in right]
-    return Loop(tuple(fillet_chain(edges, [0.0, *radii, *reversed(radii), 0.0], closed=True)), "FORK")
-
-
-def _right_half(fork: Fork) -> list[tuple[Edge, float]]:
-    """From the neck up the outside, round the horn and down the slot; each edge with the fillet after it."""
-    s = fork.scale
+    """The fork, drawn with the lever on the second stone's bank."""
+    s, bearing = fork.scale, -90.0 + HORN_END + fork.points.bank
     centre = fork.balance_from_bank(-1)
-    bearing = -90.0 + HORN_END + fork.points.bank
-    tip_out = polar(fork.horn_radius + HORN_TIP * s, bearing, centre)
-    tip_in = polar(fork.horn_radius, bearing, centre)
-    half = fork.slot_half
-    mouth = (half, centre[1] - math.sqrt(fork.horn_radius**2 - (half - centre[0]) ** 2))
     foot, hip = (0.13 * s, fork.neck + 0.13 * s), (0.36 * s, fork.points.lever_to_balance - HIP * s)
-    return [
-        (Line(fork.stem_half, fork.neck, *foot), 0.3 * s),
-        (Line(*foot, *hip), 0.15 * s),
-        (Line(*hip, *tip_out), 0.025 * s),
-        (Line(*tip_out, *tip_in), 0.025 * s),
-        (arc_between(tip_in, mouth, centre, False), 0.015 * s),
-        (Line(*mouth, half, fork.slot_bottom), 0.08 * s),
-    ]
-
-
-def _mirrored(edge: Edge) -> Edge:
-    """The mirror image in the y axis, run through the other way (so that the material stays on the left)."""
-    if isinstance(edge, Line):
-        return Line(-edge.x1, edge.y1, -edge.x0, edge.y0)
-    return Arc(-edge.x, edge.y, edge.radius, math.pi - edge.start_angle - edge.sweep, edge.sweep)
+    outside = [(fork.stem_half, fork.neck), foot, hip, polar(fork.horn_radius + HORN_TIP * s, bearing, centre)]
+    tip, radii = polar(fork.horn_radius, bearing, centre), [share * s for share in (0.3, 0.15, 0.025, 0.025, 0.015, 0.08)]
+    return lever_parts.fork(outside, tip, (centre, fork.horn_radius), (fork.slot_half, fork.slot_bottom), radii)
 
 
 def guard_pin(fork: Fork) -> Loop:
-    """A round foot, a bar and a rounded point."""
+    """The guard: a round foot, a bar and a rounded point."""
     s = fork.scale
-    y, tip, half, slope = fork.guard_centre(), GUARD_TIP * s, GUARD_HALF * s, GUARD_SLOPE
-    foot, radius = fork.points.lever_to_balance - GUARD_FOOT * s, GUARD_FOOT_RADIUS * s
-    left, right = polar(tip, 180.0 - slope, (0.0, y)), polar(tip, slope, (0.0, y))
-    join = foot + math.sqrt(radius**2 - half**2)
-    shoulder = right[1] - (half - right[0]) * cosine(slope) / sine(slope)
-    parts: list[tuple[Edge, float]] = [
-        (arc_between((-half, join), (half, join), (0.0, foot), True), 0.025 * s),
-        (Line(half, join, half, shoulder), 0.0),
-        (Line(half, shoulder, *right), 0.0),
-        (arc_between(right, left, (0.0, y), True), 0.0),
-        (Line(*left, -half, shoulder), 0.0),
-        (Line(-half, shoulder, -half, join), 0.025 * s),
-    ]
-    return Loop(tuple(fillet_chain([edge for edge, _ in parts], [r for _, r in parts], closed=True)), "GUARD")
+    foot = (fork.points.lever_to_balance - GUARD_FOOT * s, GUARD_FOOT_RADIUS * s)
+    return guard("GUARD", fork.guard_centre(), GUARD_TIP * s, GUARD_HALF * s, GUARD_SLOPE, foot, 0.025 * s)
 
 
 # What is the outline of a co-axial escapement's lever?
@@ -404,9 +355,7 @@ def body(points: Points, fork: Fork) -> Loop:
         (second.at(0.5 * second.length, -wall - 0.04 * s), 0.12 * s),
         *mouth(second, EXPOSED * s, s),
     ]
-    places = [place for place, _ in corners]
-    edges: list[Edge] = [Line(*a, *b) for a, b in pairwise([*places, places[0]])]
-    return Loop(tuple(fillet_chain(edges, [radius for _, radius in [*corners[1:], corners[0]]], closed=True)), "ARMS")
+    return rounded("ARMS", corners)
 
 
 def mouth(stone: Stone, exposed: float, scale: float) -> list[Part]:
@@ -453,14 +402,15 @@ ARMS_ROLLER = 4
 
 def roller(points: Points) -> list[Loop]:
     """Table with the staff's hole, stone, pin, safety roller; the balance's rim."""
-    s, fork = points.scale, Fork(points)
+    s, fork, radius = points.scale, Fork(points), points.values.pin_radius
     turn = math.radians(points.fork_bearing - 90.0)
+    pin = impulse_pin(points.pin_reach, fork.pin_centre, radius, (1.0 - 2.0 * PIN_GROUND) * radius, fork.pin_edge)
     return [
         circle("TABLE", (0.0, 0.0), _table_radius(points)),
         circle("TABLE", (0.0, 0.0), STAFF_RADIUS * s, hole=True),
         roller_stone(points).loop("IMPULSE_STONE", EDGE * s),
-        pin(points, fork).moved(turn, (0.0, 0.0)),
-        safety(s).moved(turn, (0.0, 0.0)),
+        pin.moved(turn, (0.0, 0.0)),
+        safety_roller(SAFETY_RADIUS * s, CRESCENT_DEPTH * s, CRESCENT_HALF, CRESCENT_EDGE * s).moved(turn, (0.0, 0.0)),
         circle("SAFETY", (0.0, 0.0), STAFF_RADIUS * s, hole=True),
         *wheel_of(points).rim(),
     ]
@@ -475,32 +425,6 @@ def wheel_of(points: Points) -> BalanceWheel:
 def _table_radius(points: Points) -> float:
     return TABLE_RADIUS * points.stone_reach / 1.0125
 
-
-def pin(points: Points, fork: Fork) -> Loop:
-    """A round pin with part of its diameter ground away: the flat looks outwards, its edges are rounded."""
-    centre, radius = (0.0, -fork.pin_centre), points.values.pin_radius
-    height = (1.0 - 2.0 * PIN_GROUND) * radius
-    half = math.sqrt(radius**2 - height**2)
-    left, right = (-half, -points.pin_reach), (half, -points.pin_reach)
-    edges: list[Edge] = [Line(*left, *right), arc_between(right, left, centre, True)]
-    return Loop(tuple(fillet_chain(edges, [fork.pin_edge, fork.pin_edge], closed=True)), "PIN")
-
-
-def safety(scale: float) -> Loop:
-    """The safety roller: a disc with a hollow for the guard pin's point."""
-    radius = SAFETY_RADIUS * scale
-    bottom = radius - CRESCENT_DEPTH * scale
-    right, left = (polar(radius, -90.0 + side * CRESCENT_HALF) for side in (1.0, -1.0))
-    half, height = right[0], -right[1]
-    hollow = (half**2 + (height - bottom) ** 2) / (2.0 * (height - bottom))  # circle through both edges and the bottom
-    edges: list[Edge] = [
-        arc_between(right, left, (0.0, 0.0), True),
-        arc_between(left, right, (0.0, -(bottom + hollow)), False),
-    ]
-    return Loop(tuple(fillet_chain(edges, [CRESCENT_EDGE * scale] * 2, closed=True)), "SAFETY")
-
-
-# What does the scene of a co-axial escapement say?
 
 CLEAR = 1e-4  # degrees by which lever and wheel stand off what they rest on
 
@@ -555,17 +479,12 @@ def scene_text(values: Coaxial) -> str:
     )
 
 
-# Which sheets does a co-axial escapement need?
-
-
 def sheets(values: Coaxial) -> dict[str, Sheet]:
     """File name without ending -> the part. ValueError where a fillet does not fit."""
     points = Points(values)
     parts = {"escape_wheel": wheel(points), "lever": lever(points), "roller": roller(points), "banking": banking(points)}
     return {name: Sheet(tuple(loops)) for name, loops in parts.items()}
 
-
-# Which dimensions of a co-axial escapement do not go together?
 
 INSIDE = 1.0  # degrees of the balance by which the roller stone must be inside the overlap when the wheel is let go
 FREE = 0.75  # degrees of the wheel by which a waiting tooth must stand outside an overlap
@@ -624,7 +543,5 @@ def guard_freedom(points: Points) -> float:
     cosine = (y * y + d * d - reach * reach) / (2.0 * y * d)
     return points.bank - math.degrees(math.acos(min(1.0, cosine)))
 
-
-# What makes the co-axial escapement a design?
 
 DESIGN = Design("coaxial", "Co-axial escapement with its balance", Coaxial, sheets, scene_text, conflicts)

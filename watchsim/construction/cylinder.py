@@ -1,4 +1,4 @@
-"""The cylinder as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Cylinder escapement of a watch with its balance: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from functools import cached_property
 from scipy.optimize import brentq
 
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import Conflict, Design, Impossible, dim
+from watchsim.construction.design import CHOSEN, ESTIMATE, Conflict, Design, Impossible, dim
 from watchsim.construction.outline import angle_of, arc_between, arc_of_radius, circle, fillet_chain, polar
 from watchsim.construction.parts import Arms, BalanceWheel, balance_wheel
 from watchsim.drawing.write import Sheet
@@ -22,7 +22,7 @@ from watchsim.geometry.primitives import Edge, Line, Point
 # Angles of lift and lock are the balance's, of teeth and drop the wheel's.
 
 HEADRICK = "Headrick 1997, Clock and Watch Escapement Mechanics, ch. 18"
-CHOSEN, ESTIMATE, USUAL = "chosen for this design", "estimate: not published", "usual in cylinder watches"
+USUAL = "usual in cylinder watches"
 
 
 @dataclass(frozen=True)
@@ -233,7 +233,7 @@ def wheel(shell: Shell) -> list[Loop]:
     return [
         *(tooth(shell).moved(math.radians(i * shell.pitch), (0.0, 0.0)) for i in range(shell.values.teeth)),
         Loop(tuple(edge for i in range(shell.values.teeth) for edge in _pillar(shell, i * shell.pitch)), "RIM"),
-        *(Loop(tuple(arms.window(i)), "RIM", hole=True) for i in range(ARMS)),
+        *arms.windows("RIM"),
         circle("RIM", (0.0, 0.0), BORE * d, hole=True),
     ]
 
@@ -266,8 +266,6 @@ def wheel_of(shell: Shell) -> BalanceWheel:
     """Rim and hairspring of the balance."""
     return balance_wheel(shell.values.balance_inertia, shell.outer, 0.3 * shell.inner, BALANCE_ARMS)
 
-
-# Which dimensions of a cylinder escapement do not go together?
 
 LEAST_WALL = 0.04  # of the outer radius
 PARTS = 20  # of an edge
@@ -335,8 +333,6 @@ def _distances(made: Shell, bearing: float) -> list[float]:
     return [math.dist(edge.point(i / PARTS), made.balance) for edge in edges for i in range(PARTS + 1)]
 
 
-# What does the scene of a cylinder escapement say?
-
 CLEAR = 1e-4  # degrees by which the tooth stands off the shell at the start
 
 WORDS = """\
@@ -371,9 +367,6 @@ def scene_text(values: Cylinder) -> str:
         toml.run("20 s", "1e-12"),
         toml.timegrapher(f"{values.lift:.15g}°"),
     )
-
-
-# What makes the cylinder escapement a design?
 
 
 def draw(values: Cylinder) -> dict[str, Sheet]:

@@ -1,4 +1,4 @@
-"""The detent as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Detent escapement of a marine chronometer with its balance: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import Conflict, Design, Impossible, dim
-from watchsim.construction.outline import along, angle_of, circle, polar, rounded, turned
+from watchsim.construction.design import CHOSEN, ESTIMATE, Conflict, Design, Impossible, dim
+from watchsim.construction.outline import along, angle_of, circle, polar, polygon, to_circle, turned
 from watchsim.construction.parts import Arms, Stone, ToothForm, contour
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
@@ -19,8 +19,7 @@ from watchsim.geometry.primitives import Point
 # A marine chronometer's size. Angles are those of the detent, where nothing else is said.
 
 LAYOUT = "construction by overlapping circles, docs/guide/mechanisms.md"
-USUAL, CHOSEN = "usual in marine chronometers", "chosen for this design"
-ESTIMATE = "estimate: not published"
+USUAL = "usual in marine chronometers"
 
 
 @dataclass(frozen=True)
@@ -129,12 +128,8 @@ class Points:
     def wheel_angle(self) -> float:
         """Polar angle of the tip that the locking face holds, the detent on its bank."""
         cx, cy = self.locking_corner()
-        x, y = cx + self.pivot[0], cy + self.pivot[1]
-        ux, uy = cosine(self.face_direction()), sine(self.face_direction())
-        ahead = -(x * ux + y * uy)
-        return angle_of(
-            along((x, y), self.face_direction(), ahead + math.sqrt(ahead**2 + self.values.tip_radius**2 - x * x - y * y))
-        )
+        corner, way = (cx + self.pivot[0], cy + self.pivot[1]), self.face_direction()
+        return angle_of(along(corner, way, to_circle(corner, way, self.values.tip_radius)))
 
     def pin_bearing(self) -> float:
         """Direction from B to the discharging stone's middle as the tooth is let go: it touches the passing spring's tip."""
@@ -171,7 +166,7 @@ def wheel(points: Points) -> list[Loop]:
     s, values = points.scale, points.values
     form = ToothForm(values.tip_radius, 5.0 * s, 0.05 * s, 0.75 * s, 40.0, 1.3 * s, 0.2 * s)
     arms = Arms(ARMS, ARM_WIDTH * s, HUB * s, RIM * s, WINDOW_FILLET * s)
-    windows = [Loop(tuple(arms.window(i)), "TEETH", hole=True) for i in range(ARMS)]
+    windows = arms.windows("TEETH")
     return [contour(form, values.undercut, "TEETH", values.teeth), *windows, circle("TEETH", (0.0, 0.0), BORE * s, hole=True)]
 
 
@@ -200,10 +195,10 @@ def discharging_roller(points: Points) -> float:
     return points.pin_centre - 0.2 * points.values.discharge_radius
 
 
-def _along(points: Points, corners: list[tuple[float, float, float]]) -> list[tuple[float, float, float]]:
-    """Corners (along the passing spring's face from P, to its left, fillet) in the detent's frame."""
+def _beside(points: Points, x: float, y: float) -> Point:
+    """The place in the detent's frame that is x along the passing spring's face from P and y to its left."""
     c, s = math.cos(math.radians(points.blade)), math.sin(math.radians(points.blade))
-    return [(c * x - s * y, s * x + c * y, radius) for x, y, radius in corners]
+    return (c * x - s * y, s * x + c * y)
 
 
 def bar_side(points: Points) -> float:
@@ -216,16 +211,16 @@ def detent(points: Points) -> list[Loop]:
     s = points.scale
     end = points.blade_reach - HORN_SHORT * s
     left, right = bar_side(points), bar_side(points) - BAR * s
-    bar = _along(points, [(0.0, right, 0.0), (end, right, 0.0), (end, left, 0.0), (0.0, left, 0.0)])
-    x, y, _ = _along(points, [(end - HORN_RADIUS * s, -BLADE * s - HORN_RADIUS * s, 0.0)])[0]
+    bar = [_beside(points, *corner) for corner in ((0.0, right), (end, right), (end, left), (0.0, left))]
+    horn = _beside(points, end - HORN_RADIUS * s, -BLADE * s - HORN_RADIUS * s)
     corner, face = points.locking_corner(), points.face_direction()
     # Out to the middle of the bar.
     out = (math.hypot(*corner) * math.sin(math.radians(math.degrees(math.atan2(corner[1], corner[0])) - points.blade))) - left
     stone = Stone(corner, face, LOCKING_WIDTH * s, out + 0.6 * BAR * s, LOCKING_WIDTH * s * math.tan(math.radians(8.0)))
     return [
         stone.loop("STONE", EDGE * s),
-        Loop(tuple(rounded(bar)), "BAR"),
-        circle("HORN", (x, y), HORN_RADIUS * s),
+        polygon("BAR", bar),
+        circle("HORN", horn, HORN_RADIUS * s),
         circle("HUB", (0.0, 0.0), DETENT_HUB * s),
         circle("HUB", (0.0, 0.0), DETENT_BORE * s, hole=True),
     ]
@@ -233,8 +228,7 @@ def detent(points: Points) -> list[Loop]:
 
 def root(points: Points) -> Point:
     """Where the passing spring is fixed on the detent, in its frame."""
-    x, y, _ = _along(points, [(points.blade_reach - BLADE_LENGTH * points.scale, -0.5 * BLADE * points.scale, 0.0)])[0]
-    return (x, y)
+    return _beside(points, points.blade_reach - BLADE_LENGTH * points.scale, -0.5 * BLADE * points.scale)
 
 
 def passing(points: Points) -> list[Loop]:
@@ -242,19 +236,16 @@ def passing(points: Points) -> list[Loop]:
     s = points.scale
     rx, ry = root(points)
     first, last = points.blade_reach - BLADE_LENGTH * s, points.blade_reach
-    corners = [(first, -BLADE * s, 0.0), (last, -BLADE * s, 0.0), (last, 0.0, 0.0), (first, 0.0, 0.0)]
-    leaf = [(x - rx, y - ry, radius) for x, y, radius in _along(points, corners)]
-    return [Loop(tuple(rounded(leaf)), "LEAF")]
+    corners = [(first, -BLADE * s), (last, -BLADE * s), (last, 0.0), (first, 0.0)]
+    return [polygon("LEAF", [(x - rx, y - ry) for x, y in (_beside(points, *corner) for corner in corners)])]
 
 
 def banking(points: Points) -> list[Loop]:
     """The screw against which the bar rests."""
     s = points.scale
-    x, y, _ = _along(points, [(BANK_AT * s, bar_side(points) + BANK_RADIUS * s, 0.0)])[0]
+    x, y = _beside(points, BANK_AT * s, bar_side(points) + BANK_RADIUS * s)
     return [circle("SCREW", (x + points.pivot[0], y + points.pivot[1]), BANK_RADIUS * s)]
 
-
-# What does the scene of a detent escapement say?
 
 CLEAR = 1e-4  # degrees by which tooth and passing spring stand off what they rest on at the start
 
@@ -289,7 +280,7 @@ def scene_text(values: Detent) -> str:
         toml.body(
             *("passing", "passing_spring", "LEAF"),
             "the passing spring: a light leaf, pressed on the detent's horn by its own spring",
-            on="detent",
+            rides="detent",
             position=toml.at(*root(points)),
             angle=f"{CLEAR!r}°",
             mass=f"{3.0 * values.passing_inertia * 1e2 / (BLADE_LENGTH * points.scale) ** 2:.6g} mg",
@@ -330,9 +321,6 @@ def scene_text(values: Detent) -> str:
     )
 
 
-# Which sheets does a detent escapement need?
-
-
 def sheets(values: Detent) -> dict[str, Sheet]:
     """File name without ending -> the part. ValueError where a fillet does not fit."""
     points = Points(values)
@@ -345,8 +333,6 @@ def sheets(values: Detent) -> dict[str, Sheet]:
     }
     return {name: Sheet(tuple(loops)) for name, loops in parts.items()}
 
-
-# Which dimensions of a detent escapement do not go together?
 
 THIN = 1.3  # of the staff's radius: the least that holds the discharging stone
 FREE = 0.5  # degrees of the wheel by which a waiting tooth must stand outside the overlap
@@ -375,7 +361,5 @@ def conflicts(values: Detent) -> Iterator[Conflict]:
         return
     sheets(values)
 
-
-# What makes the detent escapement a design?
 
 DESIGN = Design("detent", "Detent escapement of a marine chronometer with its balance", Detent, sheets, scene_text, conflicts)

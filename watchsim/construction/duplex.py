@@ -1,4 +1,4 @@
-"""The duplex as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Duplex escapement of a watch with its balance: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import Conflict, Design, Impossible, dim
-from watchsim.construction.outline import along, arc_between, circle, fillet_chain, polar, turned
+from watchsim.construction.design import CHOSEN, ESTIMATE, Conflict, Design, Impossible, dim
+from watchsim.construction.outline import along, arc_between, circle, polar, rounded, turned
 from watchsim.construction.parts import Arms, BalanceWheel, Stone, ToothForm, balance_wheel, contour, tooth_and_gap
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
@@ -19,7 +19,7 @@ from watchsim.geometry.primitives import Arc, Edge, Line
 # Angles of notch, drop and letting go are the balance's, of the reach the wheel's.
 
 ABBOTT = "Abbott, The American Watchmaker and Jeweler (1893), Duplex Escapement"
-CHOSEN, ESTIMATE, USUAL = "chosen for this design", "estimate: not published", "usual in duplex watches"
+USUAL = "usual in duplex watches"
 
 
 @dataclass(frozen=True)
@@ -124,7 +124,7 @@ def wheel(points: DuplexPoints) -> list[Loop]:
     upright = impulse_tooth(points)
     return [
         contour(form, values.undercut, "RESTING", values.teeth),
-        *(Loop(tuple(arms.window(i)), "RESTING", hole=True) for i in range(ARMS)),
+        *arms.windows("RESTING"),
         circle("RESTING", (0.0, 0.0), BORE * s, hole=True),
         *(
             upright.moved(math.radians(points.waiting - points.rests + i * points.pitch), (0.0, 0.0))
@@ -152,9 +152,8 @@ def impulse_tooth(points: DuplexPoints) -> Loop:
     tip, height = (points.impulse_radius, 0.0), UPRIGHT * s
     front = along(tip, 180.0 - points.values.undercut, height / math.cos(math.radians(points.values.undercut)))
     back = along(polar(points.impulse_radius, 0.5), 180.0 - points.values.undercut - BACK, 1.15 * height)
-    corners = [front, tip, polar(points.impulse_radius, 0.5), back]
-    edges: list[Edge] = [Line(*corners[i], *corners[(i + 1) % 4]) for i in range(4)]
-    return Loop(tuple(fillet_chain(edges, [0.0, 0.0, 0.1 * height, 0.1 * height], closed=True)), "IMPULSE")
+    heel, foot = polar(points.impulse_radius, 0.5), 0.1 * height
+    return rounded("IMPULSE", [(front, foot), (tip, 0.0), (heel, 0.0), (back, foot)])
 
 
 def balance(points: DuplexPoints) -> list[Loop]:
@@ -188,8 +187,6 @@ def wheel_of(points: DuplexPoints) -> BalanceWheel:
     """Rim and hairspring of the balance."""
     return balance_wheel(points.values.balance_inertia, points.pallet, 0.45 * points.roller, BALANCE_ARMS)
 
-
-# Which dimensions of a duplex escapement do not go together?
 
 FREE = 0.2  # degrees of the wheel by which an impulse tooth stands outside the overlap until the notch has let go
 LEAST_FLOOR = 2.0  # degrees
@@ -234,8 +231,6 @@ def conflicts(values: Duplex) -> Iterator[Conflict]:
         yield Conflict("start", f"must be at most {round_again:.4g}°: farther out the notch comes round to the tooth again")
 
 
-# What does the scene of a duplex escapement say?
-
 OFF = 1e-4  # degrees by which the tooth stands off the roller at the start
 
 WORDS = """\
@@ -270,9 +265,6 @@ def scene_text(values: Duplex) -> str:
         toml.run("60 s", "1e-12"),
         toml.timegrapher(toml.Noted(f"{lift:.4g}°", "from the notch's taking of a tooth to the end of the impulse", 11)),
     )
-
-
-# What makes the duplex escapement a design?
 
 
 def draw(values: Duplex) -> dict[str, Sheet]:

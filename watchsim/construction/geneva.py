@@ -1,4 +1,4 @@
-"""The geneva as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Geneva drive with a locking disc: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -7,15 +7,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import Conflict, Design, dim
-from watchsim.construction.outline import arc_between, circle, polar
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim
+from watchsim.construction.outline import arc_between, around, circle, polar
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Edge, Line
-
-# Which numbers does the designer of a Geneva drive choose?
-
-CHOSEN = "chosen for this design"
 
 
 @dataclass(frozen=True)
@@ -81,8 +77,6 @@ def mouth_half(values: Geneva) -> float:
     return math.degrees(math.asin(slot_half(values) / wheel_radius(values)))
 
 
-# Which dimensions of a Geneva drive do not go together?
-
 LEAST_RIM = 0.02  # of the wheel's radius, that must stay between slot and hollow
 
 
@@ -133,8 +127,6 @@ def disc(values: Geneva) -> Loop:
     return Loop(tuple(edges), "DISC")
 
 
-# What does the scene of a Geneva drive say?
-
 TURNS = 2.25  # of the driver, which starts square to the line of centres: the pin then stands deepest in the third slot
 
 
@@ -163,18 +155,15 @@ def scene_text(values: Geneva) -> str:
     )
 
 
-# What is the outline of the driven wheel?
-
 BORE_WHEEL = 0.2  # by the distance of the slots' bottoms from the axis
 
 
 def wheel(values: Geneva) -> list[Loop]:
     """The slotted wheel and its bore."""
     pitch = math.radians(2.0 * half_pitch(values))
-    part = Loop(tuple(sector(values)), "WHEEL")
-    edges = [edge for i in range(values.slots) for edge in part.moved(i * pitch, (0.0, 0.0)).edges]
+    outline = around("WHEEL", sector(values), (i * pitch for i in range(values.slots)))
     bore = BORE_WHEEL * (slot_bottom(values) - slot_half(values))
-    return [Loop(tuple(edges), "WHEEL"), circle("WHEEL", (0.0, 0.0), bore, hole=True)]
+    return [outline, circle("WHEEL", (0.0, 0.0), bore, hole=True)]
 
 
 def sector(values: Geneva) -> list[Edge]:
@@ -191,9 +180,6 @@ def sector(values: Geneva) -> list[Edge]:
         arc_between(first, last, polar(centre_distance(values), middle), False),
         arc_between(last, polar(rim, 2.0 * middle - mouth), (0.0, 0.0), True),
     ]
-
-
-# What makes the Geneva drive a design?
 
 
 def draw(values: Geneva) -> dict[str, Sheet]:

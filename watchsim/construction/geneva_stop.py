@@ -1,4 +1,4 @@
-"""The geneva stop as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Geneva stop-work on the barrel of a watch, wound by hand: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from watchsim.construction import geneva as of_drive
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import Conflict, Design, dim
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim
 from watchsim.construction.geneva import (
     BORE_WHEEL,
     Geneva,
@@ -25,9 +25,7 @@ from watchsim.construction.outline import arc_between, circle, polar
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
 
-# Which numbers does the designer of a Geneva stop-work choose?
-
-CHOSEN, USUAL = "chosen for this design", "usual in watches"
+USUAL = "usual in watches"
 
 
 @dataclass(frozen=True)
@@ -64,8 +62,6 @@ class GenevaStop:
         )
 
 
-# Which dimensions of a Geneva stop-work do not go together?
-
 SPARE = 1.1
 
 
@@ -98,8 +94,6 @@ def cross(drive: Geneva) -> list[Loop]:
     bore = BORE_WHEEL * (slot_bottom(drive) - slot_half(drive))
     return [Loop(tuple(edges), "CROSS"), circle("CROSS", (0.0, 0.0), bore, hole=True)]
 
-
-# What does the scene of a Geneva stop-work say?
 
 LONGER = 1.4  # times the time that the turns would take at the speed without impacts
 OUTSIDE = 90.0  # degrees of the arbor from where its pin is deepest, at the start
@@ -145,9 +139,6 @@ def scene_text(values: GenevaStop) -> str:
         toml.contacts(values, "arbor.PIN cross.CROSS", "arbor.DISC cross.CROSS: the lock, and the stop"),
         toml.run(f"{duration:.6g} s"),
     )
-
-
-# What makes the Geneva stop-work a design?
 
 
 def draw(values: GenevaStop) -> dict[str, Sheet]:

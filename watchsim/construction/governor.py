@@ -1,4 +1,4 @@
-"""The governor as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Governor fly of a striking train: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -7,14 +7,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import Conflict, Design, dim
-from watchsim.construction.outline import circle, rounded
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim
+from watchsim.construction.outline import circle, polygon
 from watchsim.drawing.write import Sheet
-from watchsim.geometry.loops import Loop
-
-# Which numbers does the designer of a governor fly choose?
-
-CHOSEN = "chosen for this design"
 
 
 @dataclass(frozen=True)
@@ -35,8 +30,6 @@ class Governor:
     )
     air: float = dim(1.2, "kg/m³", 0.1, 5.0, "density", "at 20 °C and sea level")
 
-
-# What does the scene of a governor fly say?
 
 WORDS = """\
 The governor of a striking train: a weight on a drum drives a fly through gears, and the air on its vanes takes what that
@@ -84,17 +77,14 @@ def scene_text(values: Governor) -> str:
     )
 
 
-# What makes the governor fly of a striking train a design?
-
-
 def draw(values: Governor) -> dict[str, Sheet]:
     """Drum and fly: two vanes on a collar, seen along the axis."""
     far, half = values.reach, 0.5 * values.thickness
-    vanes = rounded([(-far, -half, 0.0), (far, -half, 0.0), (far, half, 0.0), (-far, half, 0.0)])
+    vanes = polygon("VANES", [(-far, -half), (far, -half), (far, half), (-far, half)])
     collar = max(0.1 * values.reach, values.thickness)
     return {
         "drum": Sheet((circle("DRUM", (0.0, 0.0), values.drum_radius),)),
-        "fly": Sheet((Loop(tuple(vanes), "VANES"), circle("COLLAR", (0.0, 0.0), collar))),
+        "fly": Sheet((vanes, circle("COLLAR", (0.0, 0.0), collar))),
     }
 
 

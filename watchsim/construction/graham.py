@@ -1,4 +1,4 @@
-"""The graham as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Graham's dead-beat escapement with its pendulum: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import Conflict, Design, Impossible, dim
-from watchsim.construction.outline import along, angle_of, arc_between, circle, polar, turned
+from watchsim.construction.design import CHOSEN, Conflict, Design, Impossible, dim
+from watchsim.construction.outline import along, angle_of, arc_between, around, circle, polar, polygon, turned
 from watchsim.construction.parts import bob_and_rod
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
@@ -18,7 +18,7 @@ from watchsim.geometry.primitives import Edge, Line, Point
 #
 # Angles of lock and lift are at the pendulum's pivot, of drop and tooth at the wheel's.
 
-CHOSEN, USUAL = "chosen for this design", "usual in pendulum clocks"
+USUAL = "usual in pendulum clocks"
 
 
 @dataclass(frozen=True)
@@ -143,15 +143,14 @@ def pendulum(anchor: Anchor) -> list[Loop]:
     """Pallets, anchor, rod and bob."""
     values = anchor.values
     size, half = values.tip_radius, ROD * values.tip_radius
-    down = [(half, 0.0), (half, -values.pendulum), (-half, -values.pendulum), (-half, 0.0)]
-    rod = tuple(Line(*down[i], *down[i - 1]) for i in range(4))
+    low = -values.pendulum
     return [
         pallet(anchor, 1),
         pallet(anchor, -1),
         arms(anchor),
         circle("ANCHOR", (0.0, 0.0), BORE * size, hole=True),
-        Loop(tuple(edge for edge in reversed(rod)), "ROD"),
-        circle("BOB", (0.0, -values.pendulum), values.bob_radius),
+        polygon("ROD", [(-half, 0.0), (-half, low), (half, low), (half, 0.0)]),
+        circle("BOB", (0.0, low), values.bob_radius),
     ]
 
 
@@ -200,8 +199,6 @@ def arms(anchor: Anchor) -> Loop:
     return Loop(tuple(edges), "ANCHOR")
 
 
-# What does the scene of an anchor escapement with a pendulum say?
-
 CLEAR = 1e-5  # degrees by which the tooth stands off the pallet at the start
 BRASS = 8400.0  # kg/m³
 
@@ -232,8 +229,6 @@ def scene_text(anchor: Anchor, name: str) -> str:
     )
 
 
-# What is the outline of an escape wheel with pointed teeth?
-
 DEPTH, RIM, HUB_WHEEL, BORE_WHEEL = 0.2, 0.1, 0.2, 0.06  # by the radius of the wheel
 ARMS, ARM = 4, 0.05
 
@@ -242,11 +237,10 @@ def wheel(values: Graham) -> list[Loop]:
     """Teeth, windows and bore."""
     size = values.tip_radius
     pitch = 2.0 * math.pi / values.teeth
-    tooth = Loop(tuple(_tooth(values)), "TEETH")
-    edges = [edge for i in range(values.teeth) for edge in tooth.moved(i * pitch, (0.0, 0.0)).edges]
+    teeth = around("TEETH", _tooth(values), (i * pitch for i in range(values.teeth)))
     inner, outer = HUB_WHEEL * size, (1.0 - DEPTH - RIM) * size
     windows = [_window(90.0 * i, inner, outer, ARM * size) for i in range(ARMS)]
-    return [Loop(tuple(edges), "TEETH"), *windows, circle("TEETH", (0.0, 0.0), BORE_WHEEL * size, hole=True)]
+    return [teeth, *windows, circle("TEETH", (0.0, 0.0), BORE_WHEEL * size, hole=True)]
 
 
 def feet(values: Graham) -> tuple[Point, Point]:
@@ -259,7 +253,7 @@ def feet(values: Graham) -> tuple[Point, Point]:
 def _down(corner: Point, way: float, size: float) -> Point:
     """Along `way` from a corner to the floor."""
     floor, x, y = (1.0 - DEPTH) * size, *corner
-    dx, dy = math.cos(math.radians(way)), math.sin(math.radians(way))
+    dx, dy = polar(1.0, way)
     ahead = -(x * dx + y * dy)
     return along(corner, way, ahead - math.sqrt(ahead * ahead - (x * x + y * y - floor * floor)))
 
@@ -298,8 +292,6 @@ def _window(start: float, inner: float, outer: float, half: float) -> Loop:
     return Loop(tuple(edges), "TEETH", hole=True)
 
 
-# Which dimensions of a dead-beat or recoil escapement do not go together?
-
 LEAST_WIDTH, LEAST_GAP, MOST_SPAN = 0.2, 0.3, 80.0
 
 
@@ -324,9 +316,6 @@ def conflicts(anchor: Anchor) -> Iterator[Conflict]:
         yield Conflict("back", f"must be more than the undercut of {values.undercut:g}°, else a tooth is thinner at its foot")
     elif gap(values) < LEAST_GAP:
         yield Conflict("back", f"leaves {gap(values):.3g}° between two teeth; {LEAST_GAP:g}° are needed")
-
-
-# What makes the dead-beat escapement a design?
 
 
 def sheets(anchor: Anchor) -> dict[str, Sheet]:

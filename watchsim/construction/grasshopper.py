@@ -1,4 +1,4 @@
-"""The grasshopper as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Grasshopper escapement with its pendulum: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -7,16 +7,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import Conflict, Design, dim
-from watchsim.construction.outline import angle_of, circle, polar, rounded, turned
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim
+from watchsim.construction.outline import angle_of, circle, polar, polygon, turned
 from watchsim.construction.parts import Arms
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Point
-
-# Which numbers does the designer of a grasshopper escapement choose?
-
-CHOSEN = "chosen for this design"
 
 
 @dataclass(frozen=True)
@@ -162,8 +158,8 @@ def wheel(at: Points) -> list[Loop]:
         corners += [polar(r, first), polar(r, first + LAND * at.pitch), polar(low, first + BACK * at.pitch)]
         corners += [polar(low, first + (1.0 + FRONT) * at.pitch)]
     arms = Arms(ARMS, 0.07 * r, HUB * r, RIM * low, 0.03 * r)
-    windows = [Loop(tuple(arms.window(i)), "TEETH", hole=True) for i in range(ARMS)]
-    return [_polygon(corners, "TEETH"), *windows, circle("TEETH", (0.0, 0.0), 0.05 * r, hole=True)]
+    windows = arms.windows("TEETH")
+    return [polygon("TEETH", corners), *windows, circle("TEETH", (0.0, 0.0), 0.05 * r, hole=True)]
 
 
 def pallet(at: Points, side: int) -> list[Loop]:
@@ -177,7 +173,7 @@ def pallet(at: Points, side: int) -> list[Loop]:
         nib = [(end, -deep), (end + NIB * unit, -deep), (out, NEAR * unit), (out, FAR * unit)]
         corners = [*nib, (0.0, FAR * unit), (0.0, NEAR * unit), (end, NEAR * unit)]
     hub = circle("HUB", (0.0, 0.0), 2.0 * PIN * unit)
-    return [_polygon(corners if side == EXIT else corners[::-1], "PALLET"), hub]
+    return [polygon("PALLET", corners if side == EXIT else corners[::-1]), hub]
 
 
 def pendulum(at: Points) -> list[Loop]:
@@ -216,14 +212,8 @@ def _bar(start: tuple[float, float], end: tuple[float, float], half: float, laye
     long = math.dist(start, end)
     nx, ny = half * (start[1] - end[1]) / long, half * (end[0] - start[0]) / long
     (x0, y0), (x1, y1) = start, end
-    return _polygon([(x0 - nx, y0 - ny), (x1 - nx, y1 - ny), (x1 + nx, y1 + ny), (x0 + nx, y0 + ny)], layer)
+    return polygon(layer, [(x0 - nx, y0 - ny), (x1 - nx, y1 - ny), (x1 + nx, y1 + ny), (x0 + nx, y0 + ny)])
 
-
-def _polygon(corners: list[tuple[float, float]], layer: str) -> Loop:
-    return Loop(tuple(rounded([(*corner, 0.0) for corner in corners])), layer)
-
-
-# What does the scene of a grasshopper escapement say?
 
 OFF_PALLET, OFF_STOPS = 1e-3, 1e-4  # degrees, at the start: the tooth off its pallet, the pallets off their stops
 
@@ -241,7 +231,7 @@ def scene_text(made: Points) -> str:
     def hanging(name: str, remark: str, angle: float) -> str:
         return toml.body(
             *(name, name, "PALLET", remark),
-            on="pendulum",
+            rides="pendulum",
             pivot=toml.ORIGIN,
             position=toml.at(-made.arm, 0),
             angle=f"{angle!r}°",
@@ -280,8 +270,6 @@ def scene_text(made: Points) -> str:
         toml.run("60 s", "1e-12"),
     )
 
-
-# What makes the grasshopper escapement a design?
 
 NARROWEST, WIDEST = 50.0, 130.0  # degrees between the pallets, seen from the wheel
 HIGHEST = 0.8  # of a pitch: height of a tooth

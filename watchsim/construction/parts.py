@@ -8,7 +8,18 @@ from dataclasses import dataclass
 
 from watchsim.construction import scene_builder as toml
 from watchsim.construction.design import Values
-from watchsim.construction.outline import along, angle_of, arc_between, circle, fillet_chain, polar, turned
+from watchsim.construction.outline import (
+    along,
+    angle_of,
+    arc_between,
+    around,
+    circle,
+    fillet_chain,
+    polar,
+    rounded,
+    to_circle,
+    turned,
+)
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import TURN, Edge, Line, Point
 
@@ -43,8 +54,7 @@ class Stone:
             self.at(self.length, self.width),
             self.at(self.length, 0.0),
         ]
-        edges: list[Edge] = [Line(*corners[i], *corners[(i + 1) % 4]) for i in range(4)]
-        return Loop(tuple(fillet_chain(edges, [0.0, edge, edge, 0.0], closed=True)), layer)
+        return rounded(layer, list(zip(corners, (0.0, 0.0, edge, edge), strict=True)))
 
 
 # What is the opening between two arms of a wheel?
@@ -59,6 +69,10 @@ class Arms:
     hub: float  # radius
     rim: float  # inner radius
     fillet: float  # in the corners of the openings
+
+    def windows(self, layer: str) -> list[Loop]:
+        """The openings, to be drawn with the wheel's layer."""
+        return [Loop(tuple(self.window(i)), layer, hole=True) for i in range(self.number)]
 
     def window(self, i: int) -> list[Edge]:
         """The opening between arms i and i + 1, clockwise."""
@@ -108,7 +122,7 @@ class BalanceWheel:
         return [
             circle("RIM", (0.0, 0.0), r),
             circle("RIM", (0.0, 0.0), self.staff, hole=True),
-            *(Loop(tuple(spokes.window(i)), "RIM", hole=True) for i in range(self.arms)),
+            *spokes.windows("RIM"),
         ]
 
     def hairspring(self, stud: float) -> dict[str, object]:
@@ -148,9 +162,9 @@ def other_flank(right: Sequence[Edge]) -> list[Edge]:
 
 def gear_outline(layer: str, tooth: Sequence[Edge], teeth: int, floor: float) -> list[Loop]:
     """The toothed contour, one tooth with its gap turned round, and the bore."""
-    one, pitch = Loop(tuple(tooth), layer), 2.0 * math.pi / teeth
-    edges = [edge for i in range(teeth) for edge in one.moved(i * pitch, (0.0, 0.0)).edges]
-    return [Loop(tuple(edges), layer), circle(layer, (0.0, 0.0), BORE * floor, hole=True)]
+    pitch = TURN / teeth
+    outline = around(layer, tooth, (i * pitch for i in range(teeth)))
+    return [outline, circle(layer, (0.0, 0.0), BORE * floor, hole=True)]
 
 
 def _mirrored(edge: Edge) -> Edge:
@@ -181,9 +195,7 @@ class ToothForm:
 
 def contour(form: ToothForm, undercut: float, layer: str, teeth: int) -> Loop:
     """All teeth, counter-clockwise; one tooth and the gap behind it, turned as often as there are teeth."""
-    tooth = Loop(tuple(tooth_and_gap(form, undercut, 360.0 / teeth)), layer)
-    edges = [edge for i in range(teeth) for edge in tooth.moved(i * TURN / teeth, (0.0, 0.0)).edges]
-    return Loop(tuple(edges), layer)
+    return around(layer, tooth_and_gap(form, undercut, 360.0 / teeth), (i * TURN / teeth for i in range(teeth)))
 
 
 def tooth_and_gap(form: ToothForm, undercut: float, pitch: float) -> list[Edge]:
@@ -192,7 +204,7 @@ def tooth_and_gap(form: ToothForm, undercut: float, pitch: float) -> list[Edge]:
     flat = math.degrees(form.land / form.tip)
     heel = polar(form.tip, flat)
     back = along(heel, flat + 180.0 - form.lean, form.back)
-    foot = along(tip, 180.0 - undercut, _reach(tip, 180.0 - undercut, form.root))
+    foot = along(tip, 180.0 - undercut, to_circle(tip, 180.0 - undercut, form.root, out=False))
     hollow, end = hollow_back(back, form.hollow, form.root)
     before = polar(form.root, (angle_of(foot) + angle_of(end) - pitch) / 2.0)
     after = turned(before, pitch)
@@ -215,16 +227,6 @@ def hollow_back(back: Point, radius: float, root: float) -> tuple[Edge, Point]:
         raise ValueError("the backs of the teeth do not reach the floor of their gaps")
     bearing = angle_of(back) + math.degrees(math.acos(cosine))
     return arc_between(back, polar(root, bearing), polar(reach, bearing), False), polar(root, bearing)
-
-
-def _reach(start: Point, direction: float, radius: float) -> float:
-    """How far along `direction` the circle about the wheel's centre is first met."""
-    ux, uy = math.cos(math.radians(direction)), math.sin(math.radians(direction))
-    ahead = start[0] * ux + start[1] * uy
-    return -ahead - math.sqrt(ahead**2 + radius**2 - start[0] ** 2 - start[1] ** 2)
-
-
-# What does the scene of two gears in mesh say?
 
 
 def gear_pair_scene(values: Values, heading: str, title: str, distance: float) -> str:
@@ -252,9 +254,6 @@ def gear_pair_scene(values: Values, heading: str, title: str, distance: float) -
         toml.contacts(values, "wheel.TEETH pinion.TEETH"),
         toml.run("2 s", "1e-10"),
     )
-
-
-# What does the scene of a clock say of its pendulum?
 
 
 def bob_and_rod(values: Values, bob: float, thickness: float) -> tuple[str, str]:

@@ -1,22 +1,21 @@
-"""The pin pallet as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Pin-pallet (Roskopf) lever escapement with its balance: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from itertools import pairwise
 
 import numpy as np
 from scipy.optimize import brentq
 
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import Conflict, Design, Impossible, dim
-from watchsim.construction.outline import angle_of, circle, fillet_chain, polar, turned
+from watchsim.construction.design import CHOSEN, ESTIMATE, Conflict, Design, Impossible, dim
+from watchsim.construction.outline import angle_of, circle, polar, rounded, turned
 from watchsim.construction.swiss_lever import dart_clearance, pin_reach, rest
 from watchsim.construction.swiss_lever_outlines import (
-    BORE_RADIUS_SWISS_LEVER_LEVER,
-    HUB_RADIUS_SWISS_LEVER_LEVER,
+    LEVER_BORE,
+    LEVER_HUB,
     Swiss,
     banking,
     crescent_needed,
@@ -33,7 +32,7 @@ from watchsim.construction.swiss_lever_outlines import (
 )
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
-from watchsim.geometry.primitives import Edge, Line, Point
+from watchsim.geometry.primitives import Point
 
 # Which numbers does the designer of a pin-pallet lever escapement choose?
 #
@@ -41,8 +40,7 @@ from watchsim.geometry.primitives import Edge, Line, Point
 # and
 # horn at the balance's.
 
-PLAYTNER, CHOSEN, USUAL = "as in a Swiss lever, Playtner 1910", "chosen for this design", "usual in pin-lever watches"
-ESTIMATE = "estimate: not published"
+PLAYTNER, USUAL = "as in a Swiss lever, Playtner 1910", "usual in pin-lever watches"
 
 
 @dataclass(frozen=True)
@@ -276,8 +274,6 @@ def _from_back(design: PinLever, centre: Point) -> float:
     return math.copysign(math.dist(centre, nearest), beyond)
 
 
-# Which dimensions of a pin-pallet escapement do not go together?
-
 LEAST_TOOTH, LEAST_GAP, LEAST_RISE = 2.0, 1.0, 3.0  # degrees
 SPANS = (18.0, 50.0)  # degrees, half of what the pins embrace
 STEEPEST = 50.0  # degrees of an impulse face from the wheel's rim
@@ -379,7 +375,7 @@ def pin_pallet_lever(design: PinLever) -> list[Loop]:
     return [
         *(circle("PALLETS", design.pallet(side), design.pin) for side in (1, -1)),
         body(design),
-        circle("ARMS", (0.0, 0.0), BORE_RADIUS_SWISS_LEVER_LEVER * design.lever_scale, hole=True),
+        circle("ARMS", (0.0, 0.0), LEVER_BORE * design.lever_scale, hole=True),
         fork(design),
         dart(design),
     ]
@@ -387,9 +383,9 @@ def pin_pallet_lever(design: PinLever) -> list[Loop]:
 
 def body(design: PinLever) -> Loop:
     """Stem and two arms, counter-clockwise from the right end of the stem's top; one half is the other mirrored."""
-    hub, half, boss = HUB_RADIUS_SWISS_LEVER_LEVER * design.lever_scale, design.stem_half, BOSS * design.pin
+    hub, half, boss = LEVER_HUB * design.lever_scale, design.stem_half, BOSS * design.pin
     x, y = design.pallet(-1)
-    way = _direction((x, y))
+    way = (x / (x**2 + y**2) ** 0.5, y / (x**2 + y**2) ** 0.5)
     right: list[tuple[Point, float]] = [
         (polar(1.2 * hub, 250.0 + 20.0), hub),
         (_beside((x, y), way, boss, -boss), 0.95 * boss),
@@ -399,23 +395,12 @@ def body(design: PinLever) -> Loop:
         ((half, neck_height(design)), 0.0),
     ]
     left = [((-x, y), radius) for (x, y), radius in reversed(right[1:])]
-    corners = [*right, *left]
-    places = [place for place, _ in corners]
-    edges: list[Edge] = [Line(*a, *b) for a, b in pairwise([*places, places[0]])]
-    radii = [radius for _, radius in [*corners[1:], corners[0]]]
-    return Loop(tuple(fillet_chain(edges, radii, closed=True, yielding=True)), "ARMS")
-
-
-def _direction(point: Point) -> Point:
-    length = (point[0] ** 2 + point[1] ** 2) ** 0.5
-    return (point[0] / length, point[1] / length)
+    return rounded("ARMS", [*right, *left], yielding=True)
 
 
 def _beside(point: Point, way: Point, ahead: float, left: float) -> Point:
     return (point[0] + ahead * way[0] - left * way[1], point[1] + ahead * way[1] + left * way[0])
 
-
-# What does the scene of a pin-pallet escapement say?
 
 CLEAR = 1e-4  # degrees by which lever and wheel stand off what they rest on
 
@@ -455,9 +440,6 @@ def scene_text(values: PinPallet) -> str:
         toml.torque("wheel", f"{-values.torque!r} µN·m"),
         rest(values, "wheel.TEETH lever.PALLETS"),
     )
-
-
-# What makes the pin-pallet escapement a design?
 
 
 def draw(values: PinPallet) -> dict[str, Sheet]:

@@ -1,15 +1,14 @@
-"""The pin wheel as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Pin-wheel escapement of a tower clock with its pendulum: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import pairwise
 
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import Conflict, Design, dim
-from watchsim.construction.outline import angle_of, arc_between, circle, fillet_chain, polar, turned
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim
+from watchsim.construction.outline import angle_of, arc_between, circle, polar, polygon, rounded, turned
 from watchsim.construction.parts import Arms, bob_and_rod
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
@@ -19,7 +18,7 @@ from watchsim.geometry.primitives import Edge, Line, Point
 #
 # A tower clock's size. Angles of lock and lift are at the pendulum's pivot, of the drop at the wheel's.
 
-CHOSEN, GOODRICH = "chosen for this design", "Goodrich, The Modern Clock (1905), ch. IX"
+GOODRICH = "Goodrich, The Modern Clock (1905), ch. IX"
 AS_GRAHAM = "as usual with a dead-beat anchor"
 
 
@@ -112,8 +111,6 @@ class PinAnchor:
         return locking, self.from_pivot(edge, -side * self.released)
 
 
-# Which dimensions of a pin-wheel escapement do not go together?
-
 LEAST_DRIVEN = 1.0  # degrees of the wheel
 SLOPES = (20.0, 80.0)  # degrees of an impulse face from the resting face
 LEAST_SPACE = 0.5  # of a pin's radius, between two pins
@@ -186,7 +183,7 @@ def wheel(anchor: PinAnchor) -> list[Loop]:
     return [
         *(half_pin(anchor, i * 2.0 * anchor.half_pitch) for i in range(anchor.values.pins)),
         circle("RIM", (0.0, 0.0), outer),
-        *(Loop(tuple(arms.window(i)), "RIM", hole=True) for i in range(ARMS)),
+        *arms.windows("RIM"),
         circle("RIM", (0.0, 0.0), BORE * size, hole=True),
     ]
 
@@ -208,7 +205,7 @@ def pendulum(anchor: PinAnchor) -> list[Loop]:
         pallet(anchor, -1),
         arms(anchor),
         circle("ANCHOR", (0.0, 0.0), HOLE * size, hole=True),
-        Loop(tuple(Line(*rod[i], *rod[(i + 1) % 4]) for i in range(4)), "ROD"),
+        polygon("ROD", rod),
         circle("BOB", (0.0, low), values.bob_radius),
     ]
 
@@ -243,10 +240,7 @@ def arms(anchor: PinAnchor) -> Loop:
         (right[1], 0.4 * half),
         (right[0], 0.4 * half),
     ]
-    places = [place for place, _ in corners]
-    edges: list[Edge] = [Line(*a, *b) for a, b in pairwise([*places, places[0]])]
-    radii = [radius for _, radius in [*corners[1:], corners[0]]]
-    return Loop(tuple(fillet_chain(edges, radii, closed=True, yielding=True)), "ANCHOR")
+    return rounded("ANCHOR", corners, yielding=True)
 
 
 def _leg(anchor: PinAnchor, side: int, half: float) -> tuple[Point, Point]:
@@ -256,8 +250,6 @@ def _leg(anchor: PinAnchor, side: int, half: float) -> tuple[Point, Point]:
     beside = math.degrees(half / end)
     return polar(end, foot - side * 1.5 * beside), polar(end, foot + side * 0.5 * beside)
 
-
-# What does the scene of a pin-wheel escapement say?
 
 CLEAR = 1e-5  # degrees by which the pin stands off the pallet at the start
 IRON = 7200.0  # kg/m³
@@ -289,9 +281,6 @@ def scene_text(values: PinWheel) -> str:
         toml.run("60 s", "1e-12"),
         toml.timegrapher(f"{values.lift!r}°"),
     )
-
-
-# What makes the pin-wheel escapement a design?
 
 
 def draw(values: PinWheel) -> dict[str, Sheet]:

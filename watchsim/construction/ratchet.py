@@ -1,4 +1,4 @@
-"""The ratchet as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Ratchet wheel with its click: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -7,15 +7,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import Conflict, Design, dim
-from watchsim.construction.outline import along, angle_of, circle, polar, rounded
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim
+from watchsim.construction.outline import along, angle_of, circle, polar, polygon
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Point
-
-# Which numbers does the designer of a ratchet wheel and its click choose?
-
-CHOSEN = "chosen for this design"
 
 
 @dataclass(frozen=True)
@@ -81,8 +77,6 @@ def pivot(values: Ratchet) -> Point:
     return along(nose(values), -values.click_angle, values.click_length)
 
 
-# What are the outlines of a ratchet wheel and its click?
-
 BORE = 0.15  # of the tip radius
 FOOT = 3.0  # radius of the click about its pivot, in radii of its nose
 
@@ -90,21 +84,17 @@ FOOT = 3.0  # radius of the click about its pivot, in radii of its nose
 def wheel(values: Ratchet) -> list[Loop]:
     """Saw teeth, the first root at 0°; bore."""
     corners = []
-    for i in range(values.teeth):
-        turn = i * pitch(values)
-        corners.append((*polar(root(values)[0], turn), 0.0))
-        corners.append((*polar(values.tip_radius, turn + angle_of(tip(values))), 0.0))
-    return [Loop(tuple(rounded(corners)), "TEETH"), circle("TEETH", (0.0, 0.0), BORE * values.tip_radius, hole=True)]
+    for turn in (i * pitch(values) for i in range(values.teeth)):
+        corners += [polar(root(values)[0], turn), polar(values.tip_radius, turn + angle_of(tip(values)))]
+    return [polygon("TEETH", corners), circle("TEETH", (0.0, 0.0), BORE * values.tip_radius, hole=True)]
 
 
 def click(values: Ratchet) -> list[Loop]:
     """The nose to the left of the pivot; arm and foot touch nothing."""
     r, far, wide = values.nose_radius, -values.click_length, FOOT * values.nose_radius
-    arm = rounded([(far, -r, 0.0), (0.0, -wide, 0.0), (0.0, wide, 0.0), (far, r, 0.0)])
-    return [circle("NOSE", (far, 0.0), r), Loop(tuple(arm), "ARM"), circle("FOOT", (0.0, 0.0), wide)]
+    arm = polygon("ARM", [(far, -r), (0.0, -wide), (0.0, wide), (far, r)])
+    return [circle("NOSE", (far, 0.0), r), arm, circle("FOOT", (0.0, 0.0), wide)]
 
-
-# What does the scene of a ratchet wheel and its click say?
 
 WOUND = 0.35  # rad of the click's spring at rest: it hardly weakens as the click is lifted
 
@@ -150,8 +140,6 @@ def scene_text(values: Ratchet) -> str:
         toml.run("0.5 s"),
     )
 
-
-# What makes the ratchet wheel with its click a design?
 
 NARROWEST = 20.0  # degrees
 

@@ -1,4 +1,4 @@
-"""The remontoir as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Remontoir before a Swiss lever: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -8,16 +8,13 @@ from dataclasses import dataclass
 
 from watchsim.construction import scene_builder as toml
 from watchsim.construction import swiss_lever as lever
-from watchsim.construction.design import Conflict, Design, Impossible, dim
-from watchsim.construction.outline import arc_between, circle, polar, rounded
-from watchsim.construction.swiss_lever import CLEAR, swiss, wheel_angle
+from watchsim.construction.design import CHOSEN, Conflict, Design, Impossible, dim
+from watchsim.construction.outline import arc_between, circle, polar, polygon
+from watchsim.construction.swiss_lever import CLEAR, ESTIMATE, SwissLever, swiss, wheel_angle
 from watchsim.construction.swiss_lever import draw as draw_lever
-from watchsim.construction.swiss_lever_outlines import CHOSEN, ESTIMATE, SwissLever
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Edge, Line, Point
-
-# Which numbers does the designer of a remontoir before a Swiss lever choose?
 
 
 @dataclass(frozen=True)
@@ -146,7 +143,7 @@ def _pallet(inner: float, outer: float, first: float, last: float) -> Loop:
 def _prong(values: Remontoir, side: int) -> Loop:
     near, far = _slot(values), _outside(values)
     left, right = values.arm - PRONG * values.disc, values.arm + PRONG * values.disc
-    return _polygon("FORK", [(left, side * near), (right, side * near), (right, side * far), (left, side * far)][::side])
+    return polygon("FORK", [(left, side * near), (right, side * near), (right, side * far), (left, side * far)][::side])
 
 
 def _arms(values: Remontoir, radius: float, upper: float, lower: float) -> tuple[Loop, ...]:
@@ -156,7 +153,7 @@ def _arms(values: Remontoir, radius: float, upper: float, lower: float) -> tuple
     beam = [(-root, -hub), (neck, -hub), (fork, -far), (fork, far), (neck, hub), (-root, hub)]
     above = [polar(radius - half, upper - 23.0), polar(hub, 60.0), polar(hub, 180.0), polar(radius + half, upper - 15.0)]
     below = [polar(radius - half, lower + 15.0), polar(hub, 180.0), polar(hub, 300.0), polar(radius - half, lower + 23.0)]
-    return _polygon("ARM", beam), _polygon("UPPER", above), _polygon("LOWER", below)
+    return polygon("ARM", beam), polygon("UPPER", above), polygon("LOWER", below)
 
 
 def _slot(values: Remontoir) -> float:
@@ -167,12 +164,6 @@ def _slot(values: Remontoir) -> float:
 def _outside(values: Remontoir) -> float:
     return _slot(values) + WALL * values.disc
 
-
-def _polygon(layer: str, corners: list[Point]) -> Loop:
-    return Loop(tuple(rounded([(x, y, 0.0) for x, y in corners])), layer)
-
-
-# What does the scene of a remontoir before a Swiss lever say?
 
 WORDS = """\
 A remontoir before a Swiss lever: the train does not drive the escape wheel but winds a weak spring on its arbor. An eccentric
@@ -246,8 +237,6 @@ def scene_text(values: Remontoir) -> str:
         lever.rest(values),
     )
 
-
-# What makes a remontoir before a Swiss lever a design?
 
 SURE, SPARE = 1.5, 1.1  # times what lets a tooth go, and times what winds the spring
 

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 from watchsim.construction.design import Values, dimensions_of
 
@@ -80,21 +80,22 @@ def body(
     layers: str,
     remark: str = "",
     *,
-    on: str | None = None,
+    rides: str | None = None,
     draw: str | None = None,
     pivot: object = "PIVOT",
     width: int = 8,
     **entries: object,
 ) -> str:
-    """A body with its drawing, and the layers that touch and those that are only drawn, each separated by blanks."""
-    shown = None if draw is None else draw.split()
-    first: dict[str, object] = {"on": on, "drawing": f"{file}.dxf", "layers": layers.split(), "draw": shown, "pivot": pivot}
+    """A body with its drawing, the layers that touch and those that are only drawn, each separated by blanks; it `rides` on
+    another one."""
+    first: dict[str, Any] = {} if rides is None else {"on": rides}
+    first |= {"drawing": f"{file}.dxf", "layers": layers.split(), "draw": draw and draw.split(), "pivot": pivot}
     return table(f"[bodies.{name}]", remark, width, **first, **entries)
 
 
-def banking(layer: str = "PINS", position: object = ORIGIN, on: str | None = None) -> str:
+def banking(layer: str = "PINS") -> str:
     """The banking of a lever or detent."""
-    return body("banking", "banking", layer, on=on, position=position, motion="fixed")
+    return body("banking", "banking", layer, position=ORIGIN, motion="fixed")
 
 
 class Law(Protocol):
@@ -112,8 +113,8 @@ def contacts(law: Law, *pairs: str) -> str:
     found = []
     for pair in pairs:
         sides, _, remark = pair.partition(": ")
-        coefficients = {"friction": law.friction, "restitution": law.restitution}
-        found.append(table("[[contacts]]", remark, between=sides.split(), **coefficients))
+        entries: dict[str, Any] = {"between": sides.split(), "friction": law.friction, "restitution": law.restitution}
+        found.append(table("[[contacts]]", remark, **entries))
     return scene(*found)
 
 

@@ -1,4 +1,4 @@
-"""The snail as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Snail of a striking train with its rack: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -7,15 +7,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import Conflict, Design, dim
-from watchsim.construction.outline import along, angle_of, arc_between, circle, polar, rounded, turned
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim
+from watchsim.construction.outline import along, angle_of, arc_between, circle, polar, polygon, turned
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Edge, Line, Point
-
-# Which numbers does the designer of a snail and its rack choose?
-
-CHOSEN = "chosen for this design"
 
 
 @dataclass(frozen=True)
@@ -123,8 +119,6 @@ def _beside(values: Snail, step: int) -> float:
     return math.degrees(math.asin(values.pin_radius / math.hypot(*pin(values, step))))
 
 
-# What are the outlines of a snail, its rack and the stop of the rack?
-
 BORE = 0.3  # of the lowest step's radius
 BAR = 1.5  # half the width of the tail in radii of its pin
 RACK, DEPTH, SPOKE = 0.9, 0.04, 25.0  # radius of the rack and depth of its teeth by the tail; degrees of the rack's first tooth
@@ -150,9 +144,8 @@ def rack(values: Snail) -> list[Loop]:
     half = BAR * values.pin_radius
     way = 180.0 - gathered(values)
     bar = [turned(corner, way) for corner in ((0.0, -half), (values.tail, -half), (values.tail, half), (0.0, half))]
-    tail = rounded([(*corner, 0.0) for corner in bar])
     pin = circle("PIN", polar(values.tail, way), values.pin_radius)
-    return [pin, Loop(tuple(tail), "TAIL"), _teeth(values), circle("FOOT", (0.0, 0.0), 2.0 * half)]
+    return [pin, polygon("TAIL", bar), _teeth(values), circle("FOOT", (0.0, 0.0), 2.0 * half)]
 
 
 def stop(values: Snail) -> list[Loop]:
@@ -172,10 +165,8 @@ def _teeth(values: Snail) -> Loop:
     inside, end = (1.0 - 4.0 * DEPTH) * outer, SPOKE - count * values.tooth
     narrow = SPOKE - math.degrees(3.0 * hub / inside)
     corners += [polar(inside, end), polar(inside, max(narrow, 0.5 * (SPOKE + end))), polar(hub, SPOKE - 45.0)]
-    return Loop(tuple(rounded([(*corner, 0.0) for corner in reversed(corners)])), "RACK")
+    return polygon("RACK", corners[::-1])
 
-
-# What does the scene of a snail and its rack say?
 
 SUDDEN = 1e-6  # s: over which the rack is let go
 END = 0.58  # of the last hour: the rack lies on the lowest step
@@ -229,8 +220,6 @@ def scene_text(values: Snail) -> str:
         toml.run(f"{round((values.steps - 1 + END) * values.hour, 9)!r} s"),
     )
 
-
-# What makes the snail with its rack a design?
 
 WIDEST = 140.0  # degrees of the tail to the line of centres, gathered up
 QUIET = 0.25  # of the time on a step that the rack may take to fall there

@@ -1,19 +1,16 @@
-"""The tourbillon as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Swiss lever on the carriage of a tourbillon: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 from watchsim.construction import scene_builder as toml
 from watchsim.construction.design import Design, dim
 from watchsim.construction.outline import rounded
-from watchsim.construction.swiss_lever import conflicts, parts, rest, swiss
+from watchsim.construction.swiss_lever import ESTIMATE, SwissLever, conflicts, parts, rest, swiss
 from watchsim.construction.swiss_lever import draw as draw_lever
-from watchsim.construction.swiss_lever_outlines import ESTIMATE, SwissLever
 from watchsim.drawing.write import Sheet
-from watchsim.geometry.loops import Loop
-
-# Which numbers does the designer of a tourbillon choose?
 
 
 @dataclass(frozen=True)
@@ -32,8 +29,6 @@ class Tourbillon(SwissLever):
     gravity: float = dim(9.81, "m/s²", 0.0, 20.0, "in the plane: the watch stands upright; 0: it lies flat", "mean on earth")
 
 
-# What does the scene of a tourbillon say?
-
 WORDS = """\
 A tourbillon: a Swiss lever on a carriage, the balance on its axis. The escape pinion rolls round the fixed fourth wheel, of
 {ratio} times its teeth, and the train drives the carriage. The watch stands upright, and the balance is out of
@@ -46,8 +41,8 @@ def scene_text(values: Tourbillon) -> str:
     wheel_y, lever_y = -design.balance_pivot[1], design.lever_pivot[1] - design.balance_pivot[1]
     poised = -(values.wheel_mass * wheel_y + values.lever_mass * lever_y) / values.carriage_mass
     turn = values.ratio * values.teeth * 7200.0 / values.frequency
-    carried = {"on": "carriage"}
-    more: dict[str, dict[str, object]] = {
+    carried: dict[str, Any] = {"on": "carriage"}
+    more: dict[str, dict[str, Any]] = {
         "wheel": {**carried, "mass": f"{values.wheel_mass:.15g} mg"},
         "lever": {**carried, "mass": f"{values.lever_mass:.15g} mg"},
         "balance": {
@@ -87,8 +82,6 @@ def scene_text(values: Tourbillon) -> str:
     )
 
 
-# What makes a tourbillon a design?
-
 # Shares of the distance from wheel to balance, with each corner's radius: a foot under the wheel, two arms over the balance.
 BRIDGE = (
     *((-0.23, -1.2, 0.1), (0.0, -1.34, 0.3), (0.23, -1.2, 0.1), (0.12, 0.0, 0.15), (0.38, 0.55, 0.05), (0.28, 0.71, 0.05)),
@@ -99,7 +92,7 @@ BRIDGE = (
 def draw(values: Tourbillon) -> dict[str, Sheet]:
     """The sheets of the lever, and the carriage about the balance's axis."""
     scale = swiss(values).balance_pivot[1]
-    bridge = Loop(tuple(rounded([(scale * x, scale * y, scale * radius) for x, y, radius in BRIDGE])), "BRIDGE")
+    bridge = rounded("BRIDGE", [((scale * x, scale * y), scale * radius) for x, y, radius in BRIDGE])
     return {**draw_lever(values), "carriage": Sheet((bridge,))}
 
 

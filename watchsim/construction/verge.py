@@ -1,21 +1,19 @@
-"""The verge as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Verge escapement with a foliot: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import Conflict, Design, dim
-from watchsim.construction.outline import circle, rounded
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim
+from watchsim.construction.outline import circle, polygon, rounded
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
-from watchsim.geometry.primitives import Line, Point
+from watchsim.geometry.primitives import Point
 
-# Which numbers does the designer of a verge escapement choose?
-
-CHOSEN = "chosen for this design"
 USUAL = "usual: 90° to 110° (Britten, The Watch and Clock Maker's Handbook)"
 
 
@@ -84,8 +82,6 @@ def start(values: Verge) -> float:
     return depth(values) * math.tan(math.radians(0.5 * values.flag_angle)) - 1e-3 * pitch(values)
 
 
-# What are the outlines of a verge, and of the two sides of its crown wheel?
-
 AHEAD = 2  # teeth that have passed already
 STAFF = 0.45  # radius of the verge's staff, in depths
 THICK, THINNEST = 0.16, 0.08  # of a flag, in depths and in pitches, the smaller of the two
@@ -125,9 +121,8 @@ def _rack(values: Verge, layer: str, ahead: float, way: float) -> Loop:
 
 def _closed(points: list[Point], layer: str) -> Loop:
     """Counter-clockwise, whichever way the points run."""
-    ends = list(zip(points, [*points[1:], points[0]], strict=True))
-    area = sum(a[0] * b[1] - b[0] * a[1] for a, b in ends)
-    loop = Loop(tuple(Line(*a, *b) for a, b in ends), layer)
+    area = sum(a[0] * b[1] - b[0] * a[1] for a, b in zip(points, [*points[1:], points[0]], strict=True))
+    loop = polygon(layer, points)
     return loop if area > 0.0 else loop.reversed()
 
 
@@ -155,7 +150,7 @@ def _box(layer: str, x: float, half: float, tall: float) -> Loop:
     """A plate with rounded corners about (x, 0), so wide and so high to either side."""
     corner = 0.4 * min(half, tall)
     corners = ((-half, -tall), (half, -tall), (half, tall), (-half, tall))
-    return Loop(tuple(rounded([(x + dx, dy, corner) for dx, dy in corners])), layer)
+    return rounded(layer, [((x + dx, dy), corner) for dx, dy in corners])
 
 
 def _flag(values: Verge, layer: str, angle: float, side: float) -> Loop:
@@ -166,13 +161,10 @@ def _flag(values: Verge, layer: str, angle: float, side: float) -> Loop:
     return _closed([(side * (c * x - s * y), s * x + c * y) for x, y in points], layer)
 
 
-# What does the scene of a verge escapement say?
-
-
 def scene_text(values: Verge) -> str:
     """The text of scene.toml: the verge begins at rest in the middle, a tooth of the near side at its flag."""
     words, rim = "A verge escapement with a foliot, drawn to these dimensions:", f"{values.wheel_radius:.15g} mm/rad"
-    side: dict[str, object] = {"motion": "slide", "axis": (1.0, 0.0)}
+    side: dict[str, Any] = {"motion": "slide", "axis": (1.0, 0.0)}
     return toml.scene(
         toml.head(values, words, f"Verge and foliot, crown wheel of {values.teeth} teeth"),
         toml.body(
@@ -204,8 +196,6 @@ def scene_text(values: Verge) -> str:
         toml.run("20 s", "1e-12"),
     )
 
-
-# What makes the verge escapement a design?
 
 STEEPEST = 80.0  # degrees of a flag against the wheel's axis when it lets go
 NARROWEST = 3.0  # degrees of a tooth

@@ -1,4 +1,4 @@
-"""The winding click as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Winding click with recoil: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -7,18 +7,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from watchsim.construction import ratchet
-from watchsim.construction import ratchet as saw
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import Conflict, Design, dim
-from watchsim.construction.outline import along, angle_of, circle, polar, rounded
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim
+from watchsim.construction.outline import along, angle_of, circle, polar, polygon
 from watchsim.construction.ratchet import Ratchet
 from watchsim.drawing.write import Sheet
-from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Point
-
-# Which numbers does the designer of a winding click with recoil choose?
-
-CHOSEN = "chosen for this design"
 
 
 @dataclass(frozen=True)
@@ -87,7 +81,7 @@ def lets_off(values: WindingClick) -> float:
 
 def letting_off(values: WindingClick) -> float:
     """Angle of the wheel, of which the first tooth then stands under the nose."""
-    return angle_of(nose(values, lets_off(values))) - angle_of(saw.tip(teeth(values)))
+    return angle_of(nose(values, lets_off(values))) - angle_of(ratchet.tip(teeth(values)))
 
 
 def held(values: WindingClick) -> float:
@@ -96,7 +90,7 @@ def held(values: WindingClick) -> float:
     ValueError where no face can.
     """
     middle = nose(values, values.bank)
-    foot = saw.root(teeth(values))[0] * math.sin(math.radians(values.undercut)) - values.nose_radius
+    foot = ratchet.root(teeth(values))[0] * math.sin(math.radians(values.undercut)) - values.nose_radius
     return angle_of(middle) - math.degrees(math.asin(foot / math.hypot(*middle))) + values.undercut
 
 
@@ -108,13 +102,11 @@ def nose_in_teeth(values: WindingClick) -> tuple[float, float]:
     """With the click on its bank: how far up the locking face the nose touches it, and how far it is from the back before."""
     turn, middle = held(values), nose(values, values.bank)
     seen = polar(math.hypot(*middle), angle_of(middle) - turn)
-    root, back = saw.root(teeth(values)), math.radians(saw.back(teeth(values)))
+    root, back = ratchet.root(teeth(values)), math.radians(ratchet.back(teeth(values)))
     lean = math.radians(-values.undercut)
     dx, dy = seen[0] - root[0], seen[1] - root[1]
     return dx * math.cos(lean) + dy * math.sin(lean), dy * math.cos(back) - dx * math.sin(back) - values.nose_radius
 
-
-# What does the scene of a winding click with recoil say?
 
 BEGIN, EASE, AFTER = 0.05, 0.02, 0.13  # s: before the hand winds, over which it takes hold and lets go, and after
 BEYOND = 1.0  # rad past the full mainspring: as far as its table goes
@@ -175,8 +167,6 @@ def scene_text(values: WindingClick) -> str:
     )
 
 
-# What makes the winding click with recoil a design?
-
 FOOT = 2.5  # radius of the click about its pivot, in radii of its nose
 SHALLOWEST, STEEPEST = 0.1, 60.0  # of the depth; degrees of the click at the bank
 
@@ -184,8 +174,8 @@ SHALLOWEST, STEEPEST = 0.1, 60.0  # of the depth; degrees of the click at the ba
 def draw(values: WindingClick) -> dict[str, Sheet]:
     """The wheel; the click with its nose below the pivot, arm and foot touch nothing."""
     r, low, wide = values.nose_radius, -values.click_length, FOOT * values.nose_radius
-    arm = rounded([(-r, low, 0.0), (r, low, 0.0), (wide, 0.0, 0.0), (-wide, 0.0, 0.0)])
-    click = [circle("NOSE", (0.0, low), r), Loop(tuple(arm), "ARM"), circle("FOOT", (0.0, 0.0), wide)]
+    arm = polygon("ARM", [(-r, low), (r, low), (wide, 0.0), (-wide, 0.0)])
+    click = [circle("NOSE", (0.0, low), r), arm, circle("FOOT", (0.0, 0.0), wide)]
     return {"wheel": Sheet(tuple(ratchet.wheel(teeth(values)))), "click": Sheet(tuple(click))}
 
 
@@ -216,8 +206,7 @@ def _crowded(values: WindingClick) -> Iterator[Conflict]:
     except ValueError:
         yield Conflict("nose_radius", "no locking face can meet the nose on its bank")
         return
-    tip, root = (find(teeth(values)) for find in (ratchet.tip, ratchet.root))
-    if not 0.0 < along_face < math.dist(tip, root):
+    if not 0.0 < along_face < math.dist(ratchet.tip(teeth(values)), ratchet.root(teeth(values))):
         yield Conflict("reach", "the nose on its bank does not meet a locking face between root and point")
     elif free < 0.0:
         yield Conflict("nose_radius", f"the nose meets the back of a tooth before its bank, by {-free:.3g} mm")
