@@ -35,7 +35,7 @@ from watchsim.drawing.splines import SAME, Follower
 from watchsim.geometry.biarcs import Array, Curve
 from watchsim.geometry.fitting import Fit, fit_all
 from watchsim.geometry.primitives import TURN, Arc, Edge, moved, reflected
-from watchsim.geometry.recognition import joined
+from watchsim.geometry.recognition import put_together
 
 SAMPLES = 16  # per curve; those of a circle have two humps
 SLACK = 0.01  # of the tolerance: curves that meet nearly smoothly may be moved so much
@@ -269,23 +269,20 @@ def ellipses_edges(conics: Sequence[Conic], scale: float, tolerances: Sequence[f
         plans.append((a, b, stretches))
     fits = fit_all(curves, limits)
     return [
-        _put_together(scale * np.array(conic.centre[:2]), plan, fits, tolerance)
+        _placed(scale * np.array(conic.centre[:2]), plan, fits, tolerance)
         for conic, plan, tolerance in zip(conics, plans, tolerances, strict=True)
     ]
 
 
-def _put_together(centre: Array, plan: tuple[Array, Array, list[Stretch]], fits: Sequence[Fit], tolerance: float) -> Fit:
+def _placed(centre: Array, plan: tuple[Array, Array, list[Stretch]], fits: Sequence[Fit], tolerance: float) -> Fit:
     """The edges of all stretches of one ellipse."""
     a, b, stretches = plan
     x, y = centre.tolist()
-    edges: list[Edge] = []
-    worst = 0.0
+    parts = []
     for curve, quadrant in stretches:
-        fit = fits[curve]
-        edges += [moved(edge, 0.0, (x, y)) for edge in (fit.edges if quadrant is None else in_quadrant(fit, a, b, quadrant))]
-        worst = max(worst, fit.deviation)
-    edges, shift = joined(edges, tolerance - worst)
-    return Fit(tuple(edges), worst + shift)
+        edges = fits[curve].edges if quadrant is None else in_quadrant(fits[curve], a, b, quadrant)
+        parts.append(Fit(tuple(moved(edge, 0.0, (x, y)) for edge in edges), fits[curve].deviation))
+    return put_together(parts, tolerance)
 
 
 def rational(a: Array, b: Array, low: float, high: float) -> Curve:

@@ -20,7 +20,7 @@ from watchsim.drawing.projection import Spline, Vector
 from watchsim.geometry.biarcs import Array, Curve, beziers
 from watchsim.geometry.fitting import Fit, fit_all, fit_arcs
 from watchsim.geometry.primitives import Edge, Line, moved, reflected
-from watchsim.geometry.recognition import Part, joined, parts_of, whole_circle
+from watchsim.geometry.recognition import Part, parts_of, put_together, whole_circle
 
 # Programs may store a spline by the points it was drawn through alone. Between them it is cubic, with steady curvature.
 
@@ -225,17 +225,8 @@ def _put_together(parts: Sequence[Part], fits: Iterator[Fit], tolerance: float) 
     """The edges of the parts of one spline: their own, or the next of the fits."""
     if len(parts) == 1 and parts[0].edge is None:
         return next(fits), True
-    edges: list[Edge] = []
-    worst, fitted = 0.0, False
-    for part in parts:
-        if part.edge is not None:
-            edges.append(part.edge)
-            continue
-        fit = next(fits)
-        edges.extend(fit.edges)
-        worst, fitted = max(worst, fit.deviation), True
-    edges, shift = joined(edges, tolerance - worst)
-    return Fit(tuple(edges), worst + shift), fitted
+    own = [next(fits) if part.edge is None else Fit((part.edge,), 0.0) for part in parts]
+    return put_together(own, tolerance), any(part.edge is None for part in parts)
 
 
 def followed(curves: Sequence[Curve], tolerances: Sequence[float]) -> list[Fit]:

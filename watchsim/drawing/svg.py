@@ -28,7 +28,7 @@ from watchsim.drawing.svg_elements import (
     read_tree,
     strange_attributes,
 )
-from watchsim.drawing.svg_shapes import METRES, READERS, Box, Measures, PathData, fitted, placed, plane, split_length, view_box
+from watchsim.drawing.svg_shapes import METRES, READERS, Measures, PathData, fitted, placed, plane, split_length, view_box
 from watchsim.drawing.svg_style import Styles, read_styles
 
 # Only a size of the page in a unit of length says it: width="4.3mm" viewBox="0 0 4.3 4.3" is a drawing in millimetres. Numbers
@@ -73,67 +73,51 @@ def page_unit(name: str) -> tuple[str, float]:
 def read_page(values: Mapping[str, str], stated: tuple[str, float] | None) -> Page:
     """The page of a drawing with these attributes of its root; `stated` is what the caller says about the unit."""
     findings: list[Finding] = []
-    box = _asked(lambda: view_box(values.get("viewBox")), findings)
-    width = _asked(lambda: _side(values.get("width")), findings)
-    height = _asked(lambda: _side(values.get("height")), findings)
-    empty = any(side is not None and side.value <= 0.0 for side in (width, height))
-    unit = next((side.unit for side in (width, height) if side is not None and side.unit not in ("", "%")), "")
+
+    def read(reader: Callable[[str | None], Answer], name: str) -> Answer | None:
+        try:
+            return reader(values.get(name))
+        except SvgError as error:
+            findings.append(Finding("damaged", "error", f"the page cannot be read: {error}", "Mend the first <svg> tag."))
+            return None
+
+    box = read(view_box, "viewBox")
+    sides = [read(_side, "width"), read(_side, "height")]
+    empty = any(side is not None and side.value <= 0.0 for side in sides)
+    unit = next((side.unit for side in sides if side is not None and side.unit not in ("", "%")), "")
     if empty:
-        width = height = None
-    w, h = _in_unit(width, unit), _in_unit(height, unit)
-    if width and height and bool(width.unit) != bool(height.unit):
+        sides = [None, None]
+    if None not in sides and len({bool(side.unit) for side in sides if side}) > 1:
         message = "the page gives only one of its sides a unit; the other is taken in pixels"
         findings.append(Finding("page", "warning", message, "Give width and height in the same unit."))
-    return _page(box, (w, h), unit, stated, values.get("preserveAspectRatio"), empty, findings)
-
-
-def _page(
-    box: Box | None,
-    sides: tuple[float | None, float | None],
-    unit: str,
-    stated: tuple[str, float] | None,
-    aspect: str | None,
-    empty: bool,
-    findings: list[Finding],
-) -> Page:
-    pixel = float(METRES["px"] / METRES[unit]) if unit else 1.0  # in page units
-    w, h = sides
+    w, h = (_in_unit(side, unit) for side in sides)
     if box is None:
-        sx, sy, tx, ty = pixel, pixel, 0.0, 0.0
-        width, height = (side / pixel if side is not None else 0.0 for side in sides)
+        sx = sy = float(METRES["px"] / METRES[unit]) if unit else 1.0  # a pixel in page units
+        tx = ty = 0.0
+        width, height = (side / sx if side is not None else 0.0 for side in (w, h))
     else:
+        width, height = box.width, box.height
         if w is None and h is None:
-            w, h = box.width, box.height
-        w = h * box.width / box.height if w is None and h is not None else w
-        h = w * box.height / box.width if h is None and w is not None else h
+            w, h = width, height
+        w = h * width / height if w is None and h is not None else w
+        h = w * height / width if h is None and w is not None else h
         assert w is not None and h is not None
         try:
-            sx, sy, tx, ty = fitted(box, w, h, aspect)
+            sx, sy, tx, ty = fitted(box, w, h, values.get("preserveAspectRatio"))
         except SvgError as error:
             findings.append(Finding("damaged", "error", f"the page cannot be read: {error}"))
             sx, sy, tx, ty = fitted(box, w, h, None)
-        width, height = box.width, box.height
     name, metres = (SPELLED.get(unit, unit), float(METRES[unit])) if unit else (None, 1e-3)
-    if stated is not None and not (name is not None and abs(stated[1] - metres) <= SAME * metres):
+    origin = "page"
+    if stated is not None and (name is None or abs(stated[1] - metres) > SAME * metres):
         if name is not None:
-            factor = stated[1] / (sx * metres)
-            message = f"the page says {name}, you say {stated[0]}: everything is {factor:.6g} times as large"
+            message = f"the page says {name}, you say {stated[0]}: everything is {stated[1] / (sx * metres):.6g} times as large"
             findings.append(Finding("units-overruled", "warning", message))
         name, metres, origin = stated[0], stated[1], "option"
-    else:
-        origin = "page"
     if name is None or origin == "option":  # a unit is then one of the drawing's own numbers
         sy, tx, ty, sx = sy / sx, tx / sx, ty / sx, 1.0
     root = plane(sx, 0.0, 0.0, -sy, tx, -ty)
     return Page(name, origin if name else None, metres, root, width, height, empty, tuple(findings))
-
-
-def _asked(question: Callable[[], Answer], findings: list[Finding]) -> Answer | None:
-    try:
-        return question()
-    except SvgError as error:
-        findings.append(Finding("damaged", "error", f"the page cannot be read: {error}", "Mend the first <svg> tag."))
-        return None
 
 
 def _side(text: str | None) -> _Size | None:

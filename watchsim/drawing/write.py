@@ -54,6 +54,8 @@ def dxf_text(loops: Iterable[Loop], points: Iterable[tuple[str, Point]] = (), co
             _add_loop(space, loop, touching)
         for layer, (x, y) in points:
             space.add_point((MM * x, MM * y), dxfattribs={"layer": _name(layer)})
+        document.classes.add_required_classes(document.dxfversion)
+        document.classes.classes = dict(sorted(document.classes.classes.items()))  # some come from a set, in any order
         document.write(stream)
     return stream.getvalue()
 
