@@ -17,8 +17,7 @@ from watchsim.jit import by_reference
 # How does a class of named fields become a record that kernels read and write?
 #
 # The class lists the fields: `float`, `int`, or an annotated array with its length. A record is one row of a numpy record
-# array;
-# numba passes it as one pointer, so that `state.clock.time` costs what `state.clock[0]` did.
+# array; numba passes it as one pointer, so that `state.clock.time` costs what `state.clock[0]` did.
 
 Fields = TypeVar("Fields")
 
@@ -63,8 +62,6 @@ def copy_of(record: Fields) -> Fields:
     """A record of its own with the same values."""
     return cast(Fields, row_of(record).copy().view(np.recarray)[0])
 
-
-# What do the kernels read?
 
 Records = Any  # a numpy recarray; numba infers the record type
 

@@ -82,8 +82,6 @@ def _swung(radius: Array, nx: Array, ny: Array, angle: Array) -> tuple[Array, Ar
     return radius * (np.cos(angle) - nx), radius * (np.sin(angle) - ny)
 
 
-# In whose frame are the cells of two bodies given, and along which coordinates?
-
 TURN, TRAVEL = 0, 1
 MOVEMENT = -1
 

@@ -246,9 +246,6 @@ def _tables(scene: Scene, targets: _Targets) -> tuple[Records, np.ndarray]:
     return tables, np.array(knots, float).reshape(len(knots), 2)
 
 
-# How does a scene become a model?
-
-
 @dataclass(frozen=True)
 class Compiled:
     """The model with what people need to read it."""

@@ -214,8 +214,6 @@ def coordinates_of_lines(
     return found
 
 
-# Which pairs of primitives do the contacts of a scene declare, and which of them can ever touch?
-
 Integers = NDArray[np.int64]
 
 

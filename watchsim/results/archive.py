@@ -23,8 +23,6 @@ from watchsim.simulation.state import EVENT_DTYPE, EventKind, Stop
 from watchsim.simulation.trajectory import Trajectory
 from watchsim.storage.columns import blocks, unpacked
 
-# How does a trajectory become one file, and one file a trajectory?
-
 FORMAT_ARCHIVE = 4
 OLDER = 3  # in which every pair was written out in words
 SCALARS = ("stop_message", "simulated", "wall", "compile", "method", "tolerance", "step", "keep")

@@ -31,8 +31,8 @@ from watchsim.storage.write import PREFIX, real, write_folder
 
 # What exactly was simulated?
 #
-# The completed scene as TOML: every default written out, what was derived from drawings stated, versions of the programs
-# and digests of the drawings. It loads again to an equal scene.
+# The completed scene as TOML: every default written out, what was derived from drawings stated, versions of the programs and
+# digests of the drawings. It loads again to an equal scene.
 
 PACKAGES = ("watchsim", "numpy", "scipy", "numba", "shapely", "ezdxf", "trimesh")
 HEADER = "# Completed by watchsim: all defaults written out. Loads again to the scene that was simulated.\n\n"
@@ -200,8 +200,6 @@ def kept_names(scene: Scene) -> dict[str, str]:
         names[name] = f"{FOLDER}/{there}"
     return names
 
-
-# What does a run leave on disk? summary.json, trajectory.npz, events.csv and the rest.
 
 SUMMARY, TRAJECTORY, EVENTS = "summary.json", "trajectory.npz", "events.csv"
 STATE = "state.npz"

@@ -189,8 +189,8 @@ def unevenness(marks: Array) -> Array:
 
 # What can be said of a run without keeping it?
 #
-# Sums over all half swings of its first sprung body and counts of its events, made as the run goes. Events are handed over part
-# by part; what a half swing still needs is carried on. However a run is cut, the same half swings are counted.
+# Sums over all half swings of its first sprung body and counts of its events, made as the run goes. Events are handed over
+# part by part; what a half swing still needs is carried on. However a run is cut, the same half swings are counted.
 
 # Of each half swing: amplitude (rad or m), time since the passage two before (s), unevenness of the ticks and of the passages
 # (s, with the sign of the direction of swing, so that chance does not add up to a beat error).
@@ -286,8 +286,6 @@ def _add(moments: Array, values: Array) -> None:
     moments[2] = squares + float(((values - centre) ** 2).sum()) + apart * apart * number * count / whole
     moments[3], moments[4] = min(least, values.min()), max(largest, values.max())
 
-
-# Which rows and events stay when the buffers are emptied?
 
 Bits = NDArray[np.bool_]
 

@@ -54,8 +54,7 @@ from watchsim.tolerances import FIRST_STEP
 # How long may the loop go on before Python looks at clock, progress and interrupts again?
 #
 # A slice ends after a simulated time or a number of steps, whichever comes first: where events crowd, time is no measure of
-# work.
-# How slices end changes no bit of a run.
+# work. How slices end changes no bit of a run.
 
 SLICE_WALL = 0.1  # s between looks at the clock
 FEWEST_STEPS, MOST_STEPS = 16.0, 4000.0  # of a slice; steps may become much slower from one to the next
@@ -198,8 +197,6 @@ def _details(run: Run, stop: Stop) -> str:
     return ""
 
 
-# How does a simulation run from Python, whatever the stepping?
-
 Progress = Callable[[float, float], None]  # simulated time, duration
 
 ROWS, EVENTS = 20000, 20000
@@ -274,7 +271,10 @@ class Run:
 
     def settings(self) -> dict[str, Any]:
         """What must be the same when a saved state is taken up; the natural step follows from the model."""
-        return {"method": self.method, **{name: float(value) for name, value in self.options._asdict().items() if name != "natural"}}
+        return {
+            "method": self.method,
+            **{name: float(value) for name, value in self.options._asdict().items() if name != "natural"},
+        }
 
     def save(self) -> SavedState:
         """The state now, with the sums over all events so far."""

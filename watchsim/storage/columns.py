@@ -183,9 +183,6 @@ class LongText:
                 file.write(part.tobytes())
 
 
-# How is a long array read from an archive without memory for all of it?
-
-
 def unpacked(archive: np.lib.npyio.NpzFile, name: str, folder: Path) -> NDArray[Any]:
     """Member `name` of an open npz archive; where it is long, mapped from a file without a name.
 

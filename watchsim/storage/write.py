@@ -24,8 +24,7 @@ from watchsim import stopping
 # What must be on the disk before the next step may be taken?
 #
 # A rename may reach the disk before the bytes of what was renamed: after a power cut there would be an empty file under the
-# final
-# name. So everything is synchronised first.
+# final name. So everything is synchronised first.
 
 AT_ONCE = 8  # files
 CANNOT = (errno.EINVAL, errno.ENOTSUP, errno.EACCES, errno.EPERM, errno.EBADF, errno.EISDIR)
@@ -255,8 +254,6 @@ def abandon() -> None:
                 break
             scratch.clear()
 
-
-# How is a file or a folder written whole or not at all?
 
 Ours = Callable[[str], bool]  # of a path in the folder, with slashes: is it a file of ours, which may be replaced?
 
