@@ -117,8 +117,8 @@ def _imported(package: Path, text: str) -> Iterable[str]:
 
 def _user_folder() -> Path:
     """Where this user's caches live: WATCHSIM_CACHE, or the platform's custom."""
-    if asked := os.environ.get(VARIABLE):
-        return Path(asked).expanduser().absolute()
+    if named := os.environ.get(VARIABLE):
+        return Path(named).expanduser().absolute()
     home = Path(os.path.expanduser("~"))  # noqa: PTH111 - Path.home() raises where there is no home
     if sys.platform == "win32":
         base = Path(os.environ.get("LOCALAPPDATA") or home / "AppData" / "Local")

@@ -208,9 +208,9 @@ BODY_PAIR = np.dtype(
         ("stop", "i8"),
         ("near_start", "i8"),  # those that can ever touch are near_start..near_stop of `near`
         ("near_stop", "i8"),
-        ("listed", "i8"),  # 0: all of `near` are candidates in every cell, nothing is asked
+        ("listed", "i8"),  # 0: all of `near` are candidates in every cell, no search
         ("clearance", "f8"),  # m: primitives count as able to touch when they come this close
-        ("reach", "f8"),  # m: with their origins further apart they cannot; 0: not asked
+        ("reach", "f8"),  # m: with their origins further apart they cannot; 0: unknown
         ("axes", "i8"),  # 0: no cells, all of `near` are candidates; else the number of cell coordinates
         ("c0", "i8"),  # cell coordinates and their cell sizes; a pivot's index wraps after `wrap` cells (0: no wrap)
         ("c1", "i8"),

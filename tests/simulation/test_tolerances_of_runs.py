@@ -24,22 +24,6 @@ from watchsim.simulation.state import METHODS, MOREAU, NO_CONTACT, USUAL_STEP, E
 # Which tolerances and rooms has a run? Against the numbers of the method, for a scene of any size.
 
 
-@pytest.mark.parametrize("size", [0.4, 3e-3])
-@pytest.mark.parametrize(
-    ("tolerance", "behind", "speed"),
-    [(1e-12, 2e-8, 1e-8), (1e-10, 2e-8, 1e-8), (2e-9, 4e-8, 4e-8), (1e-7, 2e-6, 2e-6), (1e-3, 2e-5, 2e-2)],
-)
-def test_lengths_and_speeds_that_are_zero_scale_with_the_size(
-    size: float, tolerance: float, behind: float, speed: float
-) -> None:
-    options = options_for(size, tolerance, 0.125)
-    lengths = {"gap_zero": 1e-13, "gap_close": 2e-10, "behind": behind, "sunk": 2e-5, "extent": 1.2e-10, "speed_zero": speed}
-    for name, share in {**lengths, "accumulation_speed": 0.1}.items():
-        assert getattr(options, name) == pytest.approx(share * size, rel=1e-12, abs=0.0)
-    assert (options.tolerance, options.size, options.max_step) == (tolerance, size, 0.125)
-    assert (options.force_zero, options.sleep, options.accumulation_time) == (1e-10, 1e-9, 1e-6)
-
-
 @pytest.mark.parametrize(("tolerance", "phase"), [
     (1e-9, 0.1), (1e-8, 0.1), (1e-10, 0.1 * 10.0**-0.2), (1e-12, 0.1 * 10.0**-0.6), (3e-14, 0.0125), (1e-13, 0.1 * 10.0**-0.8),
 ])  # fmt: skip

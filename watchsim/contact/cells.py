@@ -120,7 +120,7 @@ _lock = threading.Lock()
 
 
 class Known:
-    """The candidates of one pair of bodies in the cells asked about so far, numbered from the pair's first contact."""
+    """The candidates of one pair of bodies in the cells searched so far, numbered from the pair's first contact."""
 
     def __init__(self, search: PairSearch) -> None:
         self._search = search
@@ -131,7 +131,7 @@ class Known:
         return len(self._found)
 
     def cells(self) -> list[Cell]:
-        """All cells asked about so far."""
+        """All cells searched so far."""
         return list(self._found)
 
     def ask(self, index: Integers) -> None:
@@ -206,18 +206,18 @@ def _digest(model: Model, p: int) -> bytes:
 
 
 Array = NDArray[np.float64]
-AROUND = {1: 16, 2: 4, 3: 1}  # cells asked about together, to each side, by number of axes
+AROUND = {1: 16, 2: 4, 3: 1}  # cells searched together, to each side, by number of axes
 BESIDE, AHEAD = {1: 4, 2: 1, 3: 1}, {1: 24, 2: 16, 3: 3}  # of bodies that move: to each side of their way, and along it
 MOST = 1 << 20  # cells in the table; beyond it everything is forgotten, so that no run fills the memory
 
 
 class CellFinder:
-    """The table of one run: the candidate contacts of every cell that it, or an earlier run, has asked about."""
+    """The table of one run: the candidate contacts of every cell that it, or an earlier run, has searched."""
 
     def __init__(self, model: Model) -> None:
         self.model = model
         self.seconds = 0.0
-        self.learned = 0  # cells that shapely was asked about
+        self.learned = 0  # cells that shapely has searched
         self._forget()
         self._pairs = {int(p): PairCells(model, int(p)) for p in np.flatnonzero(model.pairs.listed)}
         for p, pair in self._pairs.items():
@@ -324,7 +324,7 @@ class PairCells:
         return np.array(list(itertools.product(range(-reach, reach + 1), repeat=len(self.axes))))
 
     def _steps(self, u: Array | None) -> Integers:
-        """Steps from a cell to those that are asked about with it: around it, or along the way that bodies move."""
+        """Steps from a cell to those that are searched with it: around it, or along the way that bodies move."""
         pace = np.array([axis.pace_of(u) for axis in self.axes]) if u is not None else np.zeros(1)
         fastest = np.abs(pace).max()
         if not 0.0 < fastest < math.inf:
@@ -344,7 +344,7 @@ class PairCells:
         block = block[((np.abs(block) < REACH) | (parts > 0)).all(axis=1)]
         turns = np.where(parts > 0, block // np.maximum(parts, 1), 0)
         base = block - turns * parts
-        # Cells of one part lie side by side: they are asked about together.
+        # Cells of one part lie side by side: they are searched together.
         if (turns == turns[:1]).all():
             self.known.ask(base)
         else:

@@ -1,6 +1,6 @@
 """Which rows and events stay when the buffers are emptied?
 
-Those within the windows asked for, and where a recording has a tail, those of the last seconds of the run, whenever it ends.
+Those within the windows requested, and where a recording has a tail, those of the last seconds of the run, whenever it ends.
 Of rows also the one before and the one after each of these stretches, so that the motion is known up to its very ends, however
 short it is.
 
@@ -297,19 +297,19 @@ MORE_PERIODS = 4  # what the first of these half swings needs from before
 class Recorder:
     """Rows and events flushed so far, in parts; `tail` is in seconds.
 
-    `told` makes t, q, u, a of rows, and `events_told` events as they are to be kept.
+    `form` makes t, q, u, a of rows, and `event_form` makes events as they are to be kept.
     """
 
     def __init__(
         self,
         recording: Recording,
         tail: float,
-        told: Callable[[Array], Sequence[Array]] | None = None,
-        events_told: Callable[[Events], Events] | None = None,
+        form: Callable[[Array], Sequence[Array]] | None = None,
+        event_form: Callable[[Events], Events] | None = None,
     ) -> None:
         self.recording, self.tail = recording, tail
-        self._told = told or columns_of
-        self._events_told = events_told or (lambda events: events)
+        self._form = form or columns_of
+        self._event_form = event_form or (lambda events: events)
         self._done, self._done_events = Columns(), Columns()  # what stays of earlier parts
         self._ends: list[tuple[int, int]] = []  # how many rows and events that are, after each of them
         self._rows: list[tuple[Array, Bits]] = []  # of later parts, with those that stay for good
@@ -409,14 +409,14 @@ class Recorder:
         """Leave only what stays for good of the earliest open part."""
         rows, row_stays = self._rows.pop(0)
         events, event_stays = self._events.pop(0)
-        told = self._told(rows if row_stays.all() else rows[row_stays])
-        settled = self._events_told(events[event_stays])
+        formed = self._form(rows if row_stays.all() else rows[row_stays])
+        settled = self._event_form(events[event_stays])
         if row_stays.any():
-            self._done.append(told)
+            self._done.append(formed)
         if event_stays.any():
             self._done_events.append([settled])
         if self.follow is not None and (row_stays.any() or event_stays.any()):
-            self.follow(settled, told)
+            self.follow(settled, formed)
         self._ends.append((self._done.rows, self._done_events.rows))
 
     def for_good(self, end: float, parts: int) -> Bits:
@@ -443,8 +443,7 @@ class Recorder:
             return None
         rows = np.concatenate([rows for rows, _ in self._rows])[self._chosen(end)]
         events = [part[bits] for (part, _), bits in zip(self._events, self._chosen_events(end), strict=True)]
-        told = self._events_told(np.concatenate(events))
-        return self._done.all([self._told(rows)]), self._done_events.all([[told]])[0]
+        return self._done.all([self._form(rows)]), self._done_events.all([[self._event_form(np.concatenate(events))]])[0]
 
     def _chosen(self, end: float) -> Bits:
         """Which rows of the open parts are kept of a run that ends now."""

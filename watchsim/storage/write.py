@@ -292,7 +292,7 @@ def write_file(target: Path, fill: Callable[[Path], object], what: str) -> None:
     OSError where that fails, with `what` could not be written: what was there before is then still there, and nothing else.
     """
     place = real(target)
-    with _told(what, target), scratch_in(place.parent) as scratch:
+    with _explained(what, target), scratch_in(place.parent) as scratch:
         scratch.new.mkdir()
         made = scratch.new / f"file{place.suffix.lower()}"
         fill(made)
@@ -308,7 +308,7 @@ def write_folder(target: Path, fill: Callable[[Path], object], ours: Ours, what:
     still there, and nothing else.
     """
     place = real(target)
-    with _told(what, target), scratch_in(place.parent) as scratch:
+    with _explained(what, target), scratch_in(place.parent) as scratch:
         scratch.new.mkdir()
         fill(scratch.new)
         sync_tree(scratch.new)
@@ -322,7 +322,7 @@ def write_folder(target: Path, fill: Callable[[Path], object], ours: Ours, what:
 
 
 @contextlib.contextmanager
-def _told(what: str, target: Path) -> Iterator[None]:
+def _explained(what: str, target: Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:
