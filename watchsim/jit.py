@@ -165,7 +165,7 @@ def _rebuilt(cache: Any, target: Any, data: Any) -> Any:
     """What numba makes of a file of its cache, but for the code in LLVM's language, which is put by.
 
     It lies beside the machine code for functions that are compiled later and call this one: with a large function two thirds of
-    the time that loading takes, and hardly ever asked for.
+    the time that loading takes, and hardly ever needed.
     """
     (name, kind, code), about, *rest = data
     if kind != "object":
@@ -276,7 +276,7 @@ _references: list[Callable[[], None]] = []  # of which numba does not know yet
 
 
 def _define_references() -> None:
-    """Teach numba the references that modules have asked for so far."""
+    """Teach numba the references that modules have requested so far."""
     while _references:
         _references.pop()()
 

@@ -24,8 +24,8 @@ from typing import IO, Any
 # Where is the machine code of the kernels kept?
 #
 # A cached kernel does not notice when a function it calls in another file changes, so the folder carries a digest of every
-# source a kernel can reach: after an edit there the kernels are compiled anew. `WATCHSIM_CACHE` names another folder. What lies
-# there is executed, so nobody else may be able to put something there.
+# source a kernel can reach: after an edit there the kernels are compiled anew. `WATCHSIM_CACHE` names another folder. What
+# lies there is executed, so nobody else may be able to put something there.
 
 PACKAGE = Path(__file__).resolve().parent
 VARIABLE = "WATCHSIM_CACHE"
@@ -117,8 +117,8 @@ def _imported(package: Path, text: str) -> Iterable[str]:
 
 def _user_folder() -> Path:
     """Where this user's caches live: WATCHSIM_CACHE, or the platform's custom."""
-    if asked := os.environ.get(VARIABLE):
-        return Path(asked).expanduser().absolute()
+    if named := os.environ.get(VARIABLE):
+        return Path(named).expanduser().absolute()
     home = Path(os.path.expanduser("~"))  # noqa: PTH111 - Path.home() raises where there is no home
     if sys.platform == "win32":
         base = Path(os.environ.get("LOCALAPPDATA") or home / "AppData" / "Local")
@@ -191,8 +191,6 @@ def _forget_old(current: Path) -> None:
     for folder in stale:
         shutil.rmtree(folder, ignore_errors=True)
 
-
-# Are the files of machine code those that were written?
 
 try:
     import fcntl

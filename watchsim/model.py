@@ -17,8 +17,7 @@ from watchsim.jit import by_reference
 # How does a class of named fields become a record that kernels read and write?
 #
 # The class lists the fields: `float`, `int`, or an annotated array with its length. A record is one row of a numpy record
-# array;
-# numba passes it as one pointer, so that `state.clock.time` costs what `state.clock[0]` did.
+# array; numba passes it as one pointer, so that `state.clock.time` costs what `state.clock[0]` did.
 
 Fields = TypeVar("Fields")
 
@@ -63,8 +62,6 @@ def copy_of(record: Fields) -> Fields:
     """A record of its own with the same values."""
     return cast(Fields, row_of(record).copy().view(np.recarray)[0])
 
-
-# What do the kernels read?
 
 Records = Any  # a numpy recarray; numba infers the record type
 
@@ -211,9 +208,9 @@ BODY_PAIR = np.dtype(
         ("stop", "i8"),
         ("near_start", "i8"),  # those that can ever touch are near_start..near_stop of `near`
         ("near_stop", "i8"),
-        ("listed", "i8"),  # 0: all of `near` are candidates in every cell, nothing is asked
+        ("listed", "i8"),  # 0: all of `near` are candidates in every cell, no search
         ("clearance", "f8"),  # m: primitives count as able to touch when they come this close
-        ("reach", "f8"),  # m: with their origins further apart they cannot; 0: not asked
+        ("reach", "f8"),  # m: with their origins further apart they cannot; 0: unknown
         ("axes", "i8"),  # 0: no cells, all of `near` are candidates; else the number of cell coordinates
         ("c0", "i8"),  # cell coordinates and their cell sizes; a pivot's index wraps after `wrap` cells (0: no wrap)
         ("c1", "i8"),

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import dataclasses
+import json
 import math
 from collections.abc import Callable
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from moving_scenes import circle, of_kind, tip, touching
+from moving_scenes import PROFILES, circle, of_kind, tip, touching
 from mpmath import mp, mpf
 from plain_kernels import in_python
 from reference import block, oscillator, pendulum, rolling
@@ -17,10 +19,12 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 from scipy.optimize import brentq
 
+from watchsim.cli import main
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import TURN, Arc, Line
 from watchsim.jit import callable_kernel
 from watchsim.mechanism.compile import compile_scene
+from watchsim.results.folder import read_results
 from watchsim.scene.forces import Contact, Damping, Side, Spring, Torque
 from watchsim.scene.scene import Body, Scene
 from watchsim.simulation import free_motion
@@ -486,3 +490,49 @@ def test_pendulum_against_a_stop() -> None:
     times = [t for t in pendulum.touches(6, 1.2, 3.0, 0.6) if t < 2.5]
     assert [event["t"] for event in of_kind(done, EventKind.IMPACT)] == pytest.approx(times, abs=1e-8)
     assert (done.q[-1][0], done.u[-1][0]) == pytest.approx(pendulum.against_stop(2.5, 1.2, 3.0, 0.6), abs=1e-8)
+
+
+# How much work is a run in which little happens?
+
+
+def thrown(name: str, x: float, speed: float) -> Body:
+    return Body(name, "free", position=(x, 0.0), velocity=(speed, 0.0, 1.0), mass=1e-3, inertia=1e-9, loops=(circle(5e-3),))
+
+
+def test_a_run_far_beyond_its_scene_s_duration_takes_few_steps(tmp_path) -> None:
+    """The steps grow with the time that has passed, from 0.2 ps to where the disc is."""
+    line = ["run", str(PROFILES / "incline"), "--set", "run.duration=2e-13 s", "--no-plots"]
+    for duration, name in (("20 ms", "long"), ("10 ms", "short")):
+        assert main([*line, "--duration", duration, "--out", str(tmp_path / name)]) == 0
+    counts = json.loads((tmp_path / "long" / "summary.json").read_text())["counts"]
+    assert counts["flights"] + counts["steps"] < 60
+    long, short = (read_results(tmp_path / name) for name in ("long", "short"))
+    assert len(long.t) < 60
+    assert np.array_equal(long.q[: len(short.t) - 1], short.q[:-1])
+    assert long.q[-1, 1] == pytest.approx(0.15 - 0.5 * 9.21838460990976 * 0.02**2, rel=1e-13)
+
+
+def test_bodies_far_apart_are_not_looked_at_contact_by_contact() -> None:
+    """Discs that fall side by side for 5 s, and teeth that never come within reach of other teeth."""
+    discs = tuple(thrown(f"d{k}", 0.1 * k, 0.01 * k) for k in range(4))
+    wheel = Body(
+        "wheel", position=(-0.1, 0.0), velocity=(50.0,), inertia=1e-9, loops=(tip(5e-3), tip(5e-3).moved(3.0, (0.0, 0.0)))
+    )
+    contacts = touching("d0", "d1") + touching("d1", "d2") + touching("d2", "d3") + touching("d0", "wheel")
+    run = simulate(Scene("apart", (*discs, wheel), contacts=contacts, gravity=(0.0, -9.81), duration=5.0))
+    assert run.stop == Stop.DURATION
+    assert run.counts["gap_evaluations"] == 0 and run.counts["flights"] < 20
+
+
+@pytest.mark.parametrize("teeth", [1, 12])
+def test_bodies_that_come_from_afar_still_meet(teeth: int) -> None:
+    """At the place and time of the closed form; with twelve tips each, many contacts but no cells either."""
+    loops = (circle(5e-3),) if teeth == 1 else tuple(tip(5e-3).moved(k * TURN / teeth, (0.0, 0.0)) for k in range(teeth))
+    bodies = tuple(
+        dataclasses.replace(thrown(name, x, u), loops=loops, velocity=(u, 0.0, 0.0))
+        for name, x, u in (("a", 0.0, 1.0), ("b", 2.0, -0.5))
+    )
+    run = simulate(Scene("met", bodies, contacts=touching("a", "b", restitution=1.0), gravity=(0.0, -9.81), duration=2.0))
+    impacts = of_kind(run, EventKind.IMPACT)
+    assert impacts[0]["t"] == pytest.approx((2.0 - 0.01) / 1.5, rel=1e-9)
+    assert run.counts["gap_evaluations"] < 20000

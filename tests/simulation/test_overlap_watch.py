@@ -228,6 +228,8 @@ def test_without_rows_a_state_is_looked_at_sixteen_times() -> None:
         t = looker.next_look(t)
         times.append(t)
     assert times == pytest.approx([0.5 * k for k in range(1, 17)])
+    for t, later in ((8.0, 8.5), (15.9, 16.0), (16.0, 17.0), (100.0, 104.0)):  # sixteen more whenever the time has doubled
+        assert looker.next_look(t) == pytest.approx(later)
     assert looker.next_look(0.5 * (1.0 - 1e-13)) == pytest.approx(1.0)
     assert looker.next_look(0.5 * (1.0 - 1e-9)) == 0.5
     assert watch().next_look(0.0) == math.inf

@@ -14,30 +14,15 @@ from moving_scenes import profile
 
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Edge
+from watchsim.jit import callable_kernel
 from watchsim.scene.forces import Damping
 from watchsim.scene.scene import Body, Scene
 from watchsim.simulation import METHODS, MOREAU
-from watchsim.simulation.options import natural_step, options_for
+from watchsim.simulation.options import longest_step, natural_step, options_for
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.state import NO_CONTACT, USUAL_STEP, EventKind, new_state
 
 # Which tolerances and rooms has a run? Against the numbers of the method, for a scene of any size.
-
-
-@pytest.mark.parametrize("size", [0.4, 3e-3])
-@pytest.mark.parametrize(
-    ("tolerance", "behind", "speed"),
-    [(1e-12, 2e-8, 1e-8), (1e-10, 2e-8, 1e-8), (2e-9, 4e-8, 4e-8), (1e-7, 2e-6, 2e-6), (1e-3, 2e-5, 2e-2)],
-)
-def test_lengths_and_speeds_that_are_zero_scale_with_the_size(
-    size: float, tolerance: float, behind: float, speed: float
-) -> None:
-    options = options_for(size, tolerance, 0.125)
-    lengths = {"gap_zero": 1e-13, "gap_close": 2e-10, "behind": behind, "sunk": 2e-5, "extent": 1.2e-10, "speed_zero": speed}
-    for name, share in {**lengths, "accumulation_speed": 0.1}.items():
-        assert getattr(options, name) == pytest.approx(share * size, rel=1e-12, abs=0.0)
-    assert (options.tolerance, options.size, options.max_step) == (tolerance, size, 0.125)
-    assert (options.force_zero, options.sleep, options.accumulation_time) == (1e-10, 1e-9, 1e-6)
 
 
 @pytest.mark.parametrize(("tolerance", "phase"), [
@@ -53,11 +38,15 @@ def test_ways_of_stepping_have_names_and_a_usual_step() -> None:
 
 
 def test_no_step_is_longer_than_a_quarter_of_the_fastest_period() -> None:
-    def step(fastest: float) -> float:
-        compiled: Any = SimpleNamespace(fastest=fastest)
-        return natural_step(compiled, 3.0)
+    """And none is longer than the scene's duration before that has passed."""
 
-    assert step(8.0) == pytest.approx(2.0 * math.pi / 8.0 / 4.0) and step(0.1) == 3.0 == step(0.0)
+    def step(fastest: float, t: float = 0.0) -> float:
+        compiled: Any = SimpleNamespace(fastest=fastest)
+        return float(callable_kernel(longest_step)(options_for(1.0, 1e-9, 3.0, natural_step(compiled)), t))
+
+    assert step(8.0) == pytest.approx(2.0 * math.pi / 8.0 / 4.0) == step(8.0, 100.0)
+    assert step(0.1) == 3.0 == step(0.0) == step(0.0, 2.9)
+    assert step(0.1, 4.0) == 4.0 and step(0.1, 100.0) == pytest.approx(5.0 * math.pi) and step(0.0, 100.0) == 100.0
 
 
 def model(n: int = 3, bodies: int = 2, contacts: int = 5, pairs: int = 4) -> Any:
@@ -107,6 +96,7 @@ def test_lengths_and_speeds_go_with_the_size_of_the_scene() -> None:
         "sleep": 1e-9,
         "row_phase": 0.1,
         "max_step": 0.25,
+        "natural": math.inf,
         "size": SIZE,
     }
     assert found._asdict() == pytest.approx(expected, rel=1e-12, abs=0.0)
@@ -131,11 +121,6 @@ def test_what_lies_behind_and_what_is_slow_goes_with_the_tolerance_within_limits
         (behind, speed, phase), rel=1e-12, abs=0.0
     )
     assert found.gap_close == pytest.approx(6e-10, rel=1e-12, abs=0.0)
-
-
-@pytest.mark.parametrize(("fastest", "step"), [(0.0, 0.25), (4.0, 0.25), (8.0, math.pi / 16.0)])
-def test_the_longest_step_is_a_quarter_of_the_fastest_period(fastest: float, step: float) -> None:
-    assert natural_step(SimpleNamespace(fastest=fastest), 0.25) == pytest.approx(step)  # type: ignore[arg-type]
 
 
 # Does a scene written in micrometres move like the same scene in metres?

@@ -174,10 +174,10 @@ def _save(run: Trajectory, goal: Goal, numbers: Mapping[str, Any], beside: dict[
 
 def _bare(run: Trajectory, goal: Goal) -> Path:
     """Save the motion alone, which everything else can be made from."""
-    from watchsim.results.folder import bare_filler
+    from watchsim.results.folder import filler
     from watchsim.storage.destination import write_elsewhere
 
-    return write_elsewhere(goal.folder.name, bare_filler(run, goal.scene), "the motion")
+    return write_elsewhere(goal.folder.name, filler(run, None, goal.scene), "the motion")
 
 
 # How does a finished study get onto the disk, beside the rows that are there already?

@@ -20,9 +20,9 @@ from watchsim.tolerances import PLACE_ROUNDING, PLANE_ROUNDING
 
 # Which pairs of primitives that come near each other could touch inside both of them?
 #
-# A contact lies where the normal falls into the fans of both primitives and onto their lengths. The many short pieces of a fine
-# outline that lie near a corner are distinguished by that: the centre of the circle is opposite few of them. Errs only on the
-# side of too many.
+# A contact lies where the normal falls into the fans of both primitives and onto their lengths. The many short pieces of a
+# fine outline that lie near a corner are distinguished by that: the centre of the circle is opposite few of them. Errs only on
+# the side of too many.
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -276,9 +276,6 @@ def _across(drawn: Chords, points: Array, slider: Any, room: float) -> _Span:
     offset = points @ np.array([-slider.axis_y, slider.axis_x])
     low, high = (f.reduceat(offset, drawn.first[:-1]) for f in (np.minimum, np.maximum))
     return _Span(low - drawn.sag - room, high + drawn.sag + room)
-
-
-# Which primitives of two bodies could touch while their coordinates stay near given ones?
 
 
 def load_shapely() -> None:

@@ -32,7 +32,7 @@ def named_rows(numbers: Integers, rows: int) -> tuple[Integers, Integers]:
 # Which straight pieces stand for a primitive, and how far is the true curve from them?
 
 Array = NDArray[np.float64]
-MOST = 64  # pieces of one arc, unless asked otherwise
+MOST = 64  # pieces of one arc, unless requested otherwise
 
 
 class Chords(NamedTuple):
@@ -51,7 +51,7 @@ class Chords(NamedTuple):
 def chords(primitives: Records, sag: float, most: int = MOST) -> Chords:
     """Chords of all `primitives`: one point for a corner, two for a line, for an arc as many as keep within about `sag` m.
 
-    No arc has more than `most`; how far its true curve then lies from them is told.
+    No arc has more than `most`; how far its true curve then lies from them is returned.
     """
     kind, radius = primitives.kind, primitives.radius
     arc, line = kind == ARC, kind == LINE
@@ -81,8 +81,6 @@ def _swung(radius: Array, nx: Array, ny: Array, angle: Array) -> tuple[Array, Ar
     """The way from the middle of an arc, in direction (nx, ny) from its centre, to its point in direction `angle`."""
     return radius * (np.cos(angle) - nx), radius * (np.sin(angle) - ny)
 
-
-# In whose frame are the cells of two bodies given, and along which coordinates?
 
 TURN, TRAVEL = 0, 1
 MOVEMENT = -1

@@ -9,7 +9,10 @@ from watchsim.model import FREE, NO_KEY, SLIDE
 
 UNKNOWN, LISTED, ALL = -1, 0, 1
 MARGIN = 0.5  # a cell's answer holds this share of its size beyond its faces
-APART = 0.25  # of their reach: bodies that are this much further apart need no cells
+# Of their reach: bodies that are this much further apart need no cells, or, where they have none, no look at their contacts.
+APART, APART_WITHOUT_CELLS = 0.25, 1e-3
+STRIDE_WITHOUT_CELLS = 0.25  # of their reach: bodies that pass each other are looked at anew when they have moved so far
+FEW_CONTACTS = 24  # with no more reachable pairs of primitives than this, a search costs more than it saves
 REACH = 1 << 16  # cell indices beyond it fall back to all that can touch
 
 
@@ -86,32 +89,34 @@ def _between(model, pair, q):
 @kernel
 def _is_apart(model, pair, q):
     """True if the bodies of a pair have flown so far apart that nothing of them is near."""
-    return pair.reach > 0.0 and _between(model, pair, q) > APART * pair.reach
+    return pair.reach > 0.0 and _between(model, pair, q) > (APART if pair.listed else APART_WITHOUT_CELLS) * pair.reach
 
 
 @kernel
-def _rate(body, rate):
-    """How fast the origin of a body moves, from the rates (or bounds of second derivatives) of the coordinates."""
+def _velocity(body, rate):
+    """How the origin of a body moves, from the rates (or second derivatives) of the coordinates."""
     if body.motion == FREE:
-        return math.sqrt(rate[body.first] ** 2 + rate[body.first + 1] ** 2)
-    return abs(body.ratio * rate[body.first]) if body.motion == SLIDE else 0.0
+        return rate[body.first], rate[body.first + 1]
+    way = body.ratio * rate[body.first] if body.motion == SLIDE else 0.0
+    return way * body.axis_x, way * body.axis_y
 
 
 @kernel
-def _time_apart(model, pair, q, u, acceleration):
-    """A time during which the bodies of a pair that are apart do not come together."""
+def _time_to_move(model, pair, room, u, acceleration):
+    """A time during which the origins of two bodies do not move by `room` against each other."""
     a, b = model.bodies[pair.a], model.bodies[pair.b]
-    speed, bound = _rate(a, u) + _rate(b, u), _rate(a, acceleration) + _rate(b, acceleration)
-    return _time_to_leave(_between(model, pair, q), speed, bound)
+    (ax, ay), (bx, by) = _velocity(a, u), _velocity(b, u)
+    bound = math.hypot(*_velocity(a, acceleration)) + math.hypot(*_velocity(b, acceleration))
+    return _time_to_leave(room, math.hypot(ax - bx, ay - by), bound)
 
 
 @kernel
 def candidates(model, cells, p, q):
     """Candidates of body pair p at q: (UNKNOWN | LISTED | ALL, start, count)."""
     pair = model.pairs[p]
+    if _is_apart(model, pair, q):
+        return ALL, 0, 0
     if pair.listed:
-        if _is_apart(model, pair, q):
-            return ALL, 0, 0
         key = cell_key(model, p, q)
         if key != NO_KEY:
             slot = find_slot(cells.keys, key)
@@ -146,10 +151,12 @@ def _time_to_leave(room, speed, acceleration):
 def time_in_cell(model, p, q, u, acceleration):
     """A time during which body pair p's candidates at q stay complete; acceleration bounds are per coordinate."""
     pair = model.pairs[p]
-    if pair.axes == 0:
-        return math.inf
     if _is_apart(model, pair, q):
-        return _time_apart(model, pair, q, u, acceleration)
+        return _time_to_move(model, pair, _between(model, pair, q), u, acceleration)
+    if pair.axes == 0:
+        if pair.reach == 0.0 or pair.near_stop - pair.near_start <= FEW_CONTACTS:
+            return math.inf
+        return _time_to_move(model, pair, STRIDE_WITHOUT_CELLS * pair.reach, u, acceleration)
     if pair.frame >= 0:
         return _time_in_relative_cell(pair, q, u, acceleration)
     i = pair.c0
@@ -177,10 +184,11 @@ def _time_in_relative_cell(pair, q, u, acceleration):
 @kernel
 def time_through_cells(model, p, q, u, acceleration, cells):
     """A time in which body pair p passes at most about `cells` cells along each coordinate."""
-    pair = model.pairs[p]
+    pair, time = model.pairs[p], math.inf
+    if pair.axes == 0:
+        return time
     if _is_apart(model, pair, q):
-        return _time_apart(model, pair, q, u, acceleration)
-    time = math.inf
+        return _time_to_move(model, pair, _between(model, pair, q), u, acceleration)
     if pair.axes > 0:
         time = min(time, _time_through(pair, u, acceleration, pair.c0, pair.on0, cells * pair.size0))
     if pair.axes > 1:

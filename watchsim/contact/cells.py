@@ -19,16 +19,15 @@ from numpy.typing import NDArray
 
 from watchsim.contact.broad_phase import PairSearch
 from watchsim.contact.cell_frames import MOVEMENT, TRAVEL, Axis, axes_of, chords, named_rows, seen_from
-from watchsim.contact.cell_lookup import REACH, insert_cells
+from watchsim.contact.cell_lookup import FEW_CONTACTS, REACH, insert_cells
 from watchsim.contact.symmetry import AlikeContacts
 from watchsim.model import ARC, CORNER, FIXED, FULL, NO_KEY, PIVOT, SLIDE, Cells, Model, Records
 
 # Into which cells is the configuration space of two bodies divided?
 #
-# Cells are sized by how far a point travels in one. An outline that comes back onto itself within a turn gets as many cells for
-# each such part, so that they can be shared (symmetry.py).
+# Cells are sized by how far a point travels in one. An outline that comes back onto itself within a turn gets as many cells
+# for each such part, so that they can be shared (symmetry.py).
 
-FEW_CONTACTS = 24  # with no more reachable pairs of primitives than this, a search costs more than it saves
 # A cell lets the outermost point of either body travel this share of the larger one's reach: the first where outlines are made
 # of pieces as short as that, so that few of them fit into it, else the second.
 FINEST_SHARE, CELL_SHARE = 0.01, 0.02
@@ -47,23 +46,27 @@ class _Cells(NamedTuple):
 
 
 def choose_cells(bodies: Records, primitives: Records, contacts: Records, pairs: Records, near: NDArray[np.int64]) -> None:
-    """Fill in the cell coordinates of each pair of bodies that has enough reachable contacts to need a search."""
+    """Fill in the reach of each pair of bodies of which one travels, and the cells of those with many contacts."""
     for pair in pairs:
         ids = near[pair.near_start : pair.near_stop]
         axes = {b: axes_of(bodies, b, pair.frame) for b in (int(pair.a), int(pair.b))}
         used_by = [axis.coordinate for own in axes.values() for axis in own]
+        travels = any(axis.kind == TRAVEL for own in axes.values() for axis in own)
+        has_reach = travels and len(ids) and pair.frame == MOVEMENT and all(bodies[b].carrier < 0 for b in axes)
         # A coordinate that moves both bodies, as that of two gears, would need cells of both.
-        if len(ids) <= FEW_CONTACTS or not 1 <= len(used_by) <= 3 or len(set(used_by)) < len(used_by):
+        has_cells = len(ids) > FEW_CONTACTS and 1 <= len(used_by) <= 3 and len(set(used_by)) == len(used_by)
+        if not (has_reach or has_cells):
             continue
-        moving = [b for b in axes if axes[b]]
         used, _ = named_rows(np.concatenate([contacts.a[ids], contacts.b[ids]]), len(primitives))
         mine = {b: primitives[used[primitives.body[used] == b]] for b in axes}
         reach = {b: float(np.hypot(*chords(rows, pair.clearance).points.T).max(initial=0.0)) for b, rows in mine.items()}
+        if has_reach:
+            pair.reach = sum(reach.values()) + 2.0 * pair.clearance
+        if not has_cells:
+            continue
+        moving = [b for b in axes if axes[b]]
         piece = _typical_length(primitives[used])
         largest = max(reach[b] for b in moving)
-        travels = any(axis.kind == TRAVEL for own in axes.values() for axis in own)
-        if travels and pair.frame == MOVEMENT and all(bodies[b].carrier < 0 for b in axes):
-            pair.reach = sum(reach.values()) + 2.0 * pair.clearance
         travel = min(max(FINEST_SHARE * largest, piece), CELL_SHARE * largest) or pair.clearance
         cells: list[_Cells] = []
         parts = 1
@@ -104,7 +107,8 @@ def _cells(axis: Axis, travel: float, reach: float, fold: int = 1, ratio: float 
 # What is known about the cells of two bodies, in this process, from whatever run?
 #
 # Keyed by a digest of all that an answer depends on: the primitives of both bodies, where they sit and how they can move, the
-# declared contacts, and the cells. Runs of a sweep that leaves the geometry alone share it; the least recently used goes first.
+# declared contacts, and the cells. Runs of a sweep that leaves the geometry alone share it; the least recently used goes
+# first.
 
 Integers = NDArray[np.int64]
 Cell = tuple[int, ...]
@@ -116,7 +120,7 @@ _lock = threading.Lock()
 
 
 class Known:
-    """The candidates of one pair of bodies in the cells asked about so far, numbered from the pair's first contact."""
+    """The candidates of one pair of bodies in the cells searched so far, numbered from the pair's first contact."""
 
     def __init__(self, search: PairSearch) -> None:
         self._search = search
@@ -127,7 +131,7 @@ class Known:
         return len(self._found)
 
     def cells(self) -> list[Cell]:
-        """All cells asked about so far."""
+        """All cells searched so far."""
         return list(self._found)
 
     def ask(self, index: Integers) -> None:
@@ -201,21 +205,19 @@ def _digest(model: Model, p: int) -> bytes:
     return digest.digest()
 
 
-# Which contacts are candidates in each cell of two bodies' configuration space?
-
 Array = NDArray[np.float64]
-AROUND = {1: 16, 2: 4, 3: 1}  # cells asked about together, to each side, by number of axes
+AROUND = {1: 16, 2: 4, 3: 1}  # cells searched together, to each side, by number of axes
 BESIDE, AHEAD = {1: 4, 2: 1, 3: 1}, {1: 24, 2: 16, 3: 3}  # of bodies that move: to each side of their way, and along it
 MOST = 1 << 20  # cells in the table; beyond it everything is forgotten, so that no run fills the memory
 
 
 class CellFinder:
-    """The table of one run: the candidate contacts of every cell that it, or an earlier run, has asked about."""
+    """The table of one run: the candidate contacts of every cell that it, or an earlier run, has searched."""
 
     def __init__(self, model: Model) -> None:
         self.model = model
         self.seconds = 0.0
-        self.learned = 0  # cells that shapely was asked about
+        self.learned = 0  # cells that shapely has searched
         self._forget()
         self._pairs = {int(p): PairCells(model, int(p)) for p in np.flatnonzero(model.pairs.listed)}
         for p, pair in self._pairs.items():
@@ -322,7 +324,7 @@ class PairCells:
         return np.array(list(itertools.product(range(-reach, reach + 1), repeat=len(self.axes))))
 
     def _steps(self, u: Array | None) -> Integers:
-        """Steps from a cell to those that are asked about with it: around it, or along the way that bodies move."""
+        """Steps from a cell to those that are searched with it: around it, or along the way that bodies move."""
         pace = np.array([axis.pace_of(u) for axis in self.axes]) if u is not None else np.zeros(1)
         fastest = np.abs(pace).max()
         if not 0.0 < fastest < math.inf:
@@ -342,7 +344,7 @@ class PairCells:
         block = block[((np.abs(block) < REACH) | (parts > 0)).all(axis=1)]
         turns = np.where(parts > 0, block // np.maximum(parts, 1), 0)
         base = block - turns * parts
-        # Cells of one part lie side by side: they are asked about together.
+        # Cells of one part lie side by side: they are searched together.
         if (turns == turns[:1]).all():
             self.known.ask(base)
         else:

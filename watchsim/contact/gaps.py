@@ -110,10 +110,10 @@ def point_of(pose, x, y):
 # How open is a contact, and how fast does it close?
 #
 # Every pair is a circle (a convex arc, or a corner: radius 0) on body A against a line or an arc on body B. One gap function
-# serves all of them: both sides are given by a point on the outline and the normal there, and A's radius is added to B's curve,
-# which leaves a point against one curve of curvature K (docs/theory/method.md 2.2). No centre enters, so nothing is lost where
-# arcs are so flat that their centres lie far away. A gap is defined for the whole infinite line or full circle; whether the
-# contact lies inside both primitives is a question of its own.
+# serves all of them: both sides are given by a point on the outline and the normal there, and A's radius is added to B's
+# curve, which leaves a point against one curve of curvature K (docs/theory/method.md 2.2). No centre enters, so nothing is
+# lost where arcs are so flat that their centres lie far away. A gap is defined for the whole infinite line or full circle;
+# whether the contact lies inside both primitives is a question of its own.
 
 
 class Shape(NamedTuple):
@@ -256,8 +256,6 @@ def extent_margin(model, k, pose):
     inside_a, inside_b = extent_margins(model, k, pose)
     return min(inside_a, inside_b)
 
-
-# How do gaps change with motion?
 
 KINEMATICS = np.dtype(
     [

@@ -115,8 +115,6 @@ def _mismatch(primitives: Records, ends: tuple[Array, Array], image: NDArray[np.
     return np.asarray(total)
 
 
-# Which contacts are alike when a body has turned by a part of a turn that brings its outline back onto itself?
-
 Integers = NDArray[np.int64]
 
 

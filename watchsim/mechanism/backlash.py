@@ -46,9 +46,9 @@ def with_racks(scene: Scene, size: float) -> tuple[Scene, dict[str, str]]:
         bodies += stops
         named |= {stops[0].name: spring.body, stops[1].name: spring.against or spring.body}
         contacts.append(Contact((Side(stops[0].name), Side(stops[1].name)), restitution=spring.restitution))
-    hung = rides(scene.bodies)
+    riding = rides(scene.bodies)
     for k, gear in enumerate(scene.gears):
-        racks = _racks(scene, gear, k, size, rack_ways(scene, hung, gear, size))
+        racks = _racks(scene, gear, k, size, rack_ways(scene, riding, gear, size))
         bodies += racks
         named |= {rack.name: name for rack, name in zip(racks, gear.between, strict=True)}
         friction = (1.0 - gear.efficiency) / (1.0 + gear.efficiency)
@@ -65,17 +65,17 @@ class Ways(NamedTuple):
     reach: float
 
 
-def rack_ways(scene: Scene, hung: tuple[Ride, ...], gear: Gear, size: float) -> Ways:
+def rack_ways(scene: Scene, riding: tuple[Ride, ...], gear: Gear, size: float) -> Ways:
     """How gears with play move their racks, in a scene of that size (m)."""
     names = [body.name for body in scene.bodies]
     first, second = (names.index(name) for name in gear.between)
     r = gear.ratio
-    if hung[first].turns_with != second and hung[second].turns_with != first:
+    if riding[first].turns_with != second and riding[second].turns_with != first:
         return Ways((r, 1.0), (1.0, -1.0), pitch_radius(scene.bodies[first], scene.bodies[second], r, size))
     against = (r - 1.0) / (r + 1.0)
-    if hung[second].turns_with == first:
-        return Ways((1.0 + r, 1.0), (against, -1.0), _rolling_radius(hung[second], r, size))
-    return Ways((r, 1.0 + r), (1.0, against), _rolling_radius(hung[first], r, size))
+    if riding[second].turns_with == first:
+        return Ways((1.0 + r, 1.0), (against, -1.0), _rolling_radius(riding[second], r, size))
+    return Ways((r, 1.0 + r), (1.0, against), _rolling_radius(riding[first], r, size))
 
 
 def _racks(scene: Scene, gear: Gear, k: int, size: float, ways: Ways) -> tuple[Body, Body]:

@@ -149,8 +149,6 @@ def _at_rest(scene: Scene) -> Iterator[Finding]:
         yield Finding("at-rest", "notice", message, f"Give an angle or a velocity under [bodies.{body.name}].")
 
 
-# What does a scene amount to before anything is simulated?
-
 LENGTHS, MASSES, INERTIAS = ("mm", "m"), ("mg", "g", "kg"), ("mg·cm²", "g·cm²", "kg·m²")
 COORDINATES = {"fixed": 0, "pivot": 1, "slide": 1, "free": 3}
 

@@ -58,10 +58,10 @@ class _Targets:
     """On which record does a spring, torque or damper act: its body's coordinate, or the joint with another body?"""
 
     def __init__(
-        self, scene: Scene, hung: tuple[Ride, ...], bound: tuple[Bond, ...], slices: dict[str, slice], rows: Records
+        self, scene: Scene, riding: tuple[Ride, ...], bound: tuple[Bond, ...], slices: dict[str, slice], rows: Records
     ) -> None:
         self.scene, self.slices, self.rows = scene, slices, rows
-        self._hung = {body.name: ride for body, ride in zip(scene.bodies, hung, strict=True)}
+        self._riding = {body.name: ride for body, ride in zip(scene.bodies, riding, strict=True)}
         self.bonds = {body.name: bond for body, bond in zip(scene.bodies, bound, strict=True)}
         acting: list[tuple[str, str | None]] = [(one.body, None) for one in oscillators(scene)]
         for forces in (scene.springs, scene.torques, scene.damping):
@@ -76,7 +76,7 @@ class _Targets:
         """The coordinate of the other end, -1 where there is none."""
         if against is not None:
             return self.number(against)
-        carrier = self._hung[name].turns_with
+        carrier = self._riding[name].turns_with
         return self.number(self.scene.bodies[carrier].name) if carrier >= 0 and self.scene.body(name).geared is None else -1
 
     def number(self, name: str) -> int:
@@ -107,11 +107,11 @@ class _Targets:
 
     def _offset(self, name: str) -> float:
         """From an angle as the scene gives it to the coordinate, or to the difference of the two."""
-        return self._hung[name].angle if self.scene.body(name).motion == "pivot" else 0.0
+        return self._riding[name].angle if self.scene.body(name).motion == "pivot" else 0.0
 
 
 def forced_coordinates(
-    scene: Scene, hung: tuple[Ride, ...], bound: tuple[Bond, ...], slices: dict[str, slice], size: float
+    scene: Scene, riding: tuple[Ride, ...], bound: tuple[Bond, ...], slices: dict[str, slice], size: float
 ) -> Forced:
     """Coordinates with their forces; joints; force tables and their knots.
 
@@ -119,14 +119,14 @@ def forced_coordinates(
     """
     count = sum(part.stop - part.start for part in slices.values())
     rows = records(COORDINATE, count)
-    weighed = weigh(scene.bodies, hung)
-    masses = felt(scene.bodies, hung, weighed)
+    weighed = weigh(scene.bodies, riding)
+    masses = felt(scene.bodies, riding, weighed)
     for i, body in enumerate(scene.bodies):
         if body.name in slices:
-            _inertias(scene, body, i, weighed[i], hung[i], rows[slices[body.name]], size)
+            _inertias(scene, body, i, weighed[i], riding[i], rows[slices[body.name]], size)
             if any(bond.to == i != k for k, bond in enumerate(bound)) and body.prescribed is None:
                 rows[slices[body.name]].mass = masses[i]
-    targets = _Targets(scene, hung, bound, slices, rows)
+    targets = _Targets(scene, riding, bound, slices, rows)
     _weigh_geared(scene, weighed, targets)
     for spring in scene.springs:
         row = targets.row(spring.body, spring.against)
@@ -246,9 +246,6 @@ def _tables(scene: Scene, targets: _Targets) -> tuple[Records, np.ndarray]:
     return tables, np.array(knots, float).reshape(len(knots), 2)
 
 
-# How does a scene become a model?
-
-
 @dataclass(frozen=True)
 class Compiled:
     """The model with what people need to read it."""
@@ -262,7 +259,7 @@ class Compiled:
     u: np.ndarray
     fastest: float  # 1/s, largest natural frequency of a spring, 0 without springs
     against: tuple[tuple[int, int, float], ...] = ()  # coordinates given relative to a carrier: (own, carrier's or -1, angle)
-    geared: tuple[tuple[int, float, float], ...] = ()  # further columns: `told` times that coordinate plus `shift`
+    geared: tuple[tuple[int, float, float], ...] = ()  # further columns: ratio times that coordinate plus shift
 
     def relative(self, q: np.ndarray, rates: bool = False) -> np.ndarray:
         """Rows of coordinates, or of their `rates`, as the scene gives them: carried bodies relative to their carriers.
@@ -273,7 +270,7 @@ class Compiled:
         for own, on, angle in self.against:
             out[:, own] -= (q[:, on] if on >= 0 else 0.0) + (0.0 if rates else angle)
         if self.geared:
-            out = np.column_stack((out, *(told * out[:, to] + (0.0 if rates else shift) for to, told, shift in self.geared)))
+            out = np.column_stack((out, *(ratio * out[:, to] + (0.0 if rates else shift) for to, ratio, shift in self.geared)))
         return out
 
     def own(self, number: int, values: np.ndarray, rates: bool = False) -> np.ndarray:
@@ -283,7 +280,7 @@ class Compiled:
         return np.asarray(body.ratio * values[:, body.first] + (0.0 if rates else body.phase))
 
 
-_last: dict[bool, tuple[Scene, Compiled]] = {}  # by `prefilter`: the scene asked about last, which most often is the next one
+_last: dict[bool, tuple[Scene, Compiled]] = {}  # by `prefilter`: the scene compiled last, which most often is the next one
 
 
 def compile_scene(scene: Scene, prefilter: bool = True) -> Compiled:
@@ -300,14 +297,14 @@ def compile_scene(scene: Scene, prefilter: bool = True) -> Compiled:
 def _compiled(scene: Scene, prefilter: bool) -> Compiled:
     size = scene_size(scene)
     scene, named = with_racks(scene, size)
-    hung = rides(scene.bodies)
-    bound = bonds(scene.bodies, hung)
-    bodies, q, u = _bodies(scene, hung, bound)
+    riding = rides(scene.bodies)
+    bound = bonds(scene.bodies, riding)
+    bodies, q, u = _bodies(scene, riding, bound)
     slices = _slices(scene, bodies)
-    primitives, layers, owners, sides = _primitives(scene, hung, size)
+    primitives, layers, owners, sides = _primitives(scene, riding, size)
     owners = tuple(named.get(owner, owner) for owner in owners)
-    contacts, laws, pairs = declared_contacts(scene, hung, sides, primitives)
-    forced = forced_coordinates(scene, hung, bound, slices, size)
+    contacts, laws, pairs = declared_contacts(scene, riding, sides, primitives)
+    forced = forced_coordinates(scene, riding, bound, slices, size)
     pairs.clearance = CLEARANCE * size
     choose_frames(bodies, pairs)
     near = near_contacts(bodies, primitives, contacts, pairs)
@@ -318,19 +315,19 @@ def _compiled(scene: Scene, prefilter: bool) -> Compiled:
         pairs.near_start, pairs.near_stop, pairs.listed = pairs.start, pairs.stop, 0
     parts = (bodies, *forced.parts, primitives, contacts, laws, pairs, near)
     model = Model(*(frozen(part) for part in parts))
-    told = [(body.name, bond) for body, bond in zip(scene.bodies, bound, strict=True) if body.geared and body.name not in named]
-    geared = tuple((int(bodies[bond.to].first), bond.told, bond.shift) for _, bond in told)
-    slices |= {name: slice(len(q) + k, len(q) + k + 1) for k, (name, _) in enumerate(told)}
+    own = [(body.name, bond) for body, bond in zip(scene.bodies, bound, strict=True) if body.geared and body.name not in named]
+    geared = tuple((int(bodies[bond.to].first), bond.told, bond.shift) for _, bond in own)
+    slices |= {name: slice(len(q) + k, len(q) + k + 1) for k, (name, _) in enumerate(own)}
     return Compiled(
-        model, layers, owners, slices, size, frozen(q), frozen(u), forced.fastest, _against(hung, bodies, bound), geared
+        model, layers, owners, slices, size, frozen(q), frozen(u), forced.fastest, _against(riding, bodies, bound), geared
     )
 
 
-def _against(hung: tuple[Ride, ...], bodies: Records, bound: tuple[Bond, ...]) -> tuple[tuple[int, int, float], ...]:
+def _against(riding: tuple[Ride, ...], bodies: Records, bound: tuple[Bond, ...]) -> tuple[tuple[int, int, float], ...]:
     """The angles that the scene gives relative to a carrier, of bodies with a coordinate of their own."""
     return tuple(
         (int(bodies[i].first), angle_of(bodies[ride.turns_with]) if ride.turns_with >= 0 else -1, ride.angle)
-        for i, ride in enumerate(hung)
+        for i, ride in enumerate(riding)
         if bodies[i].first >= 0 and bound[i].to == i and (ride.turns_with >= 0 or ride.angle != 0.0)
     )
 
@@ -359,11 +356,11 @@ def _slices(scene: Scene, bodies: Records) -> dict[str, slice]:
     }
 
 
-def _bodies(scene: Scene, hung: tuple[Ride, ...], bound: tuple[Bond, ...]) -> tuple[Records, np.ndarray, np.ndarray]:
+def _bodies(scene: Scene, riding: tuple[Ride, ...], bound: tuple[Bond, ...]) -> tuple[Records, np.ndarray, np.ndarray]:
     rows = records(BODY, len(scene.bodies))
     q: list[float] = []
     u: list[float] = []
-    for i, (body, ride) in enumerate(zip(scene.bodies, hung, strict=True)):
+    for i, (body, ride) in enumerate(zip(scene.bodies, riding, strict=True)):
         carrier = ride.host if body.motion == "pivot" else -1
         direction = math.cos(ride.start), math.sin(ride.start)
         start = {"fixed": (), "pivot": (ride.start,), "slide": (0.0,), "free": (*body.position, body.angle)}[body.motion]
@@ -383,20 +380,20 @@ def _bodies(scene: Scene, hung: tuple[Ride, ...], bound: tuple[Bond, ...]) -> tu
 
 
 def _primitives(
-    scene: Scene, hung: tuple[Ride, ...], size: float
+    scene: Scene, riding: tuple[Ride, ...], size: float
 ) -> tuple[Records, tuple[str, ...], tuple[str, ...], dict[Side, np.ndarray]]:
     """All primitives that a contact names, their layers, their bodies, and by side of a contact the numbers of its primitives.
 
     Outlines of a part that is rigid with a moving body become outlines of that one.
     """
-    asked = list(dict.fromkeys(side for contact in scene.contacts for side in contact.sides))
+    named = list(dict.fromkeys(side for contact in scene.contacts for side in contact.sides))
     numbers = {body.name: number for number, body in enumerate(scene.bodies)}
     blocks: list[Records] = []
     layers: list[str] = []
     owners: list[str] = []
     of_layer: dict[tuple[str, str], np.ndarray] = {}
-    for side in asked:
-        body, ride = scene.body(side.body), hung[numbers[side.body]]
+    for side in named:
+        body, ride = scene.body(side.body), riding[numbers[side.body]]
         for layer in body.layers if side.layer is None else (side.layer,):
             if (side.body, layer) in of_layer:
                 continue
@@ -412,7 +409,7 @@ def _primitives(
                 owners.extend([side.body] * len(block))
             of_layer[side.body, layer] = np.arange(start, len(layers))
     sides = {}
-    for side in asked:
+    for side in named:
         chosen = scene.body(side.body).layers if side.layer is None else (side.layer,)
         sides[side] = np.concatenate([of_layer[side.body, layer] for layer in chosen] or [np.zeros(0, int)]).astype(int)
     rows = np.concatenate(blocks).view(np.recarray) if blocks else records(PRIMITIVE, 0)

@@ -214,13 +214,11 @@ def coordinates_of_lines(
     return found
 
 
-# Which pairs of primitives do the contacts of a scene declare, and which of them can ever touch?
-
 Integers = NDArray[np.int64]
 
 
 def declared_contacts(
-    scene: Scene, hung: tuple[Ride, ...], sides: dict[Side, Integers], primitives: Records
+    scene: Scene, riding: tuple[Ride, ...], sides: dict[Side, Integers], primitives: Records
 ) -> tuple[Records, Records, Records]:
     """Every declared pair (circle on A, line or arc on B), grouped by pair of bodies; the laws; the pairs of bodies."""
     laws = records(LAW, len(scene.contacts))
@@ -231,7 +229,7 @@ def declared_contacts(
         kind = TANGENTIAL_CODE[scene.tangential_law]
         laws[group] = (contact.friction, contact.restitution, contact.tangential_restitution, kind, scene.nu)
         first, last = (sides[side] for side in contact.sides)
-        i, j = (hung[number[side.body]].part_of for side in contact.sides)
+        i, j = (riding[number[side.body]].part_of for side in contact.sides)
         found.setdefault((min(i, j), max(i, j)), []).append((*_touching(primitives, first, last), group))
     pairs = records(BODY_PAIR, len(found))
     blocks = [_ascending(parts, len(primitives), len(scene.contacts)) for parts in found.values()]

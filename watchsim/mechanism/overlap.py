@@ -209,8 +209,6 @@ def _behind_arc(face: Arc, points: Floats) -> tuple[NDArray[np.bool_], Floats]:
     return turn <= abs(face.sweep), way * (face.radius - np.hypot(x, y))
 
 
-# Which bodies touch at the start, and which stand inside each other?
-
 Pose = tuple[float, float, float]
 DEVIATION = 0.1e-9  # m, of chords near the other outline; too large: depths are uncertain; too small: slow
 SIDES = np.array([-1.0, -1.0, 1.0, 1.0])  # what widens a box (xmin, ymin, xmax, ymax)

@@ -44,8 +44,6 @@ def ratio_words(scene: Scene, first: str, second: str, ratio: float) -> str:
     return f"{ratio * 1e-3 / math.tau:.6g} turns for one mm"
 
 
-# How are the places, springs, drives, damping and contacts of a scene described to people, in the units they choose?
-
 NANOMETRES = 6  # decimals of a millimetre: rounding of a position does not look like a place
 SMALL = 0.1e-3  # m: less is not given in millimetres
 

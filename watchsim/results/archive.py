@@ -23,8 +23,6 @@ from watchsim.simulation.state import EVENT_DTYPE, EventKind, Stop
 from watchsim.simulation.trajectory import Trajectory
 from watchsim.storage.columns import blocks, unpacked
 
-# How does a trajectory become one file, and one file a trajectory?
-
 FORMAT_ARCHIVE = 4
 OLDER = 3  # in which every pair was written out in words
 SCALARS = ("stop_message", "simulated", "wall", "compile", "method", "tolerance", "step", "keep")
@@ -174,17 +172,10 @@ PARTS = ("state", "tally", "recorded")  # of a state: what the names of their ar
 
 def write_state(state: SavedState, path: Path) -> None:
     """Write `path` (npz): every array in full precision, a header in JSON; nothing is pickled."""
-    header = {
-        "format": FORMAT,
-        "digest": state.digest,
-        "settings": state.settings,
-        "stored_at_start": state.stored_at_start,
-        "rows": state.rows,
-        "events": state.events,
-    }
-    arrays: dict[str, Any] = {f"state_{name}": array for name, array in state.arrays.items()}
-    arrays.update({f"tally_{name}": array for name, array in state.tally.items()})
-    arrays.update({f"recorded_{name}": array for name, array in state.recorded.items()})
+    names = ("digest", "settings", "stored_at_start", "rows", "events")
+    header = {"format": FORMAT, **{name: getattr(state, name) for name in names}}
+    groups = zip(PARTS, (state.arrays, state.tally, state.recorded), strict=True)
+    arrays: dict[str, Any] = {f"{part}_{name}": array for part, group in groups for name, array in group.items()}
     np.savez_compressed(path, header=np.frombuffer(json.dumps(header).encode(), dtype=np.uint8), **arrays)
 
 
@@ -197,12 +188,11 @@ def read_state(path: Path) -> SavedState:
     if kind != FORMAT:
         raise ValueError(f"{path} was written by another version of watchsim; run the scene again")
     with whole(path, "saved state"):
-        own, tally, recorded = (_of(arrays, f"{part}_") for part in PARTS)
+        own, tally, recorded = (
+            {name.removeprefix(f"{part}_"): array for name, array in arrays.items() if name.startswith(f"{part}_")}
+            for part in PARTS
+        )
         state = SavedState(arrays=own, tally=tally, recorded=recorded, **header)
         if not state.is_whole():
             raise ValueError("its parts do not fit together")
     return state
-
-
-def _of(arrays: dict[str, Any], prefix: str) -> dict[str, Any]:
-    return {name.removeprefix(prefix): array for name, array in arrays.items() if name.startswith(prefix)}

@@ -30,8 +30,8 @@ from watchsim.storage.write import PREFIX, real, write_folder
 
 # What exactly was simulated?
 #
-# The completed scene as TOML: every default written out, what was derived from drawings stated, versions of the programs
-# and digests of the drawings. It loads again to an equal scene.
+# The completed scene as TOML: every default written out, what was derived from drawings stated, versions of the programs and
+# digests of the drawings. It loads again to an equal scene.
 
 PACKAGES = ("watchsim", "numpy", "scipy", "numba", "shapely", "ezdxf", "trimesh")
 HEADER = "# Completed by watchsim: all defaults written out. Loads again to the scene that was simulated.\n\n"
@@ -48,22 +48,25 @@ def lock_text(scene: Scene, folder: Path | None = None, kept: Mapping[str, str] 
     ordered = {"scene": _heading(source, scene)}
     if made:  # they have no files: the design makes them again
         ordered[DESIGN] = scene.source[DESIGN]
-        source["bodies"] = {name: _undrawn(entry, made) for name, entry in source["bodies"].items()}
+        source["bodies"] = {
+            name: {key: value for key, value in entry.items() if key != "drawing" or value not in made}
+            for name, entry in source["bodies"].items()
+        }
     ordered["bodies"] = {body.name: _completed(source["bodies"][body.name], body, here, folder) for body in scene.bodies}
-    _travel(ordered["bodies"], source["bodies"], kept or {})
+    for name, entry in ordered["bodies"].items():
+        if (drawing := source["bodies"][name].get("drawing")) in (kept or {}):  # named by where it will be
+            entry["drawing"] = (kept or {})[drawing]
     ordered.update((key, value) for key, value in source.items() if key not in ordered)
     _complete_forces(ordered, scene)
     ordered["run"] = {"duration": _si(scene.duration, "s"), "tolerance": scene.tolerance, **source.get("run", {})}
     ordered["lock"] = {
         "versions": versions(),
         **({DESIGN: scene.source[DESIGN]} if DESIGN in scene.source and not made else {}),
-        "drawings": _digests(ordered["bodies"], folder or Path(), _bytes(scene, kept or {})),
+        "drawings": _digests(
+            ordered["bodies"], folder or Path(), {there: scene.drawings[name] for name, there in (kept or {}).items()}
+        ),
     }
     return HEADER + toml_text(ordered)
-
-
-def _undrawn(entry: dict[str, Any], made: frozenset[str]) -> dict[str, Any]:
-    return {key: value for key, value in entry.items() if key != "drawing" or value not in made}
 
 
 def versions() -> dict[str, str]:
@@ -127,18 +130,6 @@ def _drawing_path(path: Path, folder: Path | None) -> str:
     return Path(os.path.relpath(path, folder) if folder else path.resolve()).as_posix()
 
 
-def _travel(bodies: dict[str, Any], source: Mapping[str, Any], kept: Mapping[str, str]) -> None:
-    """Names the drawings that travel with the text by where they will be."""
-    for name, entry in bodies.items():
-        drawing = source[name].get("drawing")
-        if drawing is not None and drawing in kept:
-            entry["drawing"] = kept[drawing]
-
-
-def _bytes(scene: Scene, kept: Mapping[str, str]) -> dict[str, bytes]:
-    return {there: scene.drawings[name] for name, there in kept.items()}
-
-
 def _digests(bodies: dict[str, Any], folder: Path, known: Mapping[str, bytes]) -> dict[str, str]:
     names = dict.fromkeys(entry["drawing"] for entry in bodies.values() if "drawing" in entry)
     # The folder may not exist yet: `..` after it cannot be followed, only resolved in words.
@@ -199,8 +190,6 @@ def kept_names(scene: Scene) -> dict[str, str]:
         names[name] = f"{FOLDER}/{there}"
     return names
 
-
-# What does a run leave on disk? summary.json, trajectory.npz, events.csv and the rest.
 
 SUMMARY, TRAJECTORY, EVENTS = "summary.json", "trajectory.npz", "events.csv"
 STATE = "state.npz"
@@ -305,34 +294,22 @@ class Packed:
         give_name(made, path)
 
 
-def filler(run: Trajectory, summary: Mapping[str, Any], files: Extra) -> Callable[[Path], None]:
-    """What writes a results folder into the folder it is given; `files` holds the locked scene, its drawings and extras."""
+def filler(run: Trajectory, summary: Mapping[str, Any] | None, files: Extra) -> Callable[[Path], None]:
+    """What writes a results folder into the folder it is given; `files` holds the locked scene, its drawings and extras.
+
+    Without a summary nothing but the motion, the state and these files.
+    """
     return lambda place: _fill(place, run, summary, files)
 
 
-def bare_filler(run: Trajectory, files: Extra) -> Callable[[Path], None]:
-    """The same with the motion, the state and the given files only, such as the scene and its drawings."""
-    return lambda place: _fill_bare(place, run, files)
-
-
-def _fill(place: Path, run: Trajectory, summary: Mapping[str, Any], files: Extra) -> None:
+def _fill(place: Path, run: Trajectory, summary: Mapping[str, Any] | None, files: Extra) -> None:
     packed = None if TRAJECTORY in files else Packed(run, place)
-    if EVENTS not in files:
-        write_events(run, place / EVENTS)
-    (place / SUMMARY).write_text(json_text(summary), encoding="utf-8")
-    if run.failure is not None:
-        (place / FAILURE).write_text(json_text(run.failure), encoding="utf-8")
-    _fill_rest(place, run, files)
-    if packed is not None:
-        packed.write(place / TRAJECTORY)
-
-
-def _fill_bare(place: Path, run: Trajectory, files: Extra) -> None:
-    write_trajectory(run, place / TRAJECTORY)
-    _fill_rest(place, run, files)
-
-
-def _fill_rest(place: Path, run: Trajectory, files: Extra) -> None:
+    if summary is not None:
+        if EVENTS not in files:
+            write_events(run, place / EVENTS)
+        (place / SUMMARY).write_text(json_text(summary), encoding="utf-8")
+        if run.failure is not None:
+            (place / FAILURE).write_text(json_text(run.failure), encoding="utf-8")
     if run.end_state is not None:
         write_state(run.end_state, place / STATE)
     for name, content in files.items():
@@ -346,6 +323,8 @@ def _fill_rest(place: Path, run: Trajectory, files: Extra) -> None:
             path.write_bytes(content)
         else:
             content(path)
+    if packed is not None:
+        packed.write(place / TRAJECTORY)
 
 
 # Which trajectory does a results folder hold?

@@ -136,19 +136,19 @@ class EventLines:
 def _lines(events: NDArray[Any], kinds: Mapping[int, str], sides: Callable[[int, int], str]) -> Iterator[str]:
     """The rows as text, cut anywhere."""
     times, back = _runs(events["t"])  # at one instant there is often more than one event
-    told = np.array([f"{t!r}," for t in times.tolist()], object)[back].tolist()
+    instants = np.array([f"{t!r}," for t in times.tolist()], object)[back].tolist()
     places = [events[name].astype(np.int64) + 1 for name in ("kind", "contact", "body")]
     sizes = [int(np.max(place, initial=0)) + 1 for place in places]
     what, back = np.unique(np.ravel_multi_index(places, sizes), return_inverse=True)
     each = (np.array(np.unravel_index(what, sizes)).T - 1).tolist()
-    said = np.array([f"{kinds[kind]},{sides(contact, body)}," for kind, contact, body in each], object)[back].tolist()
+    causes = np.array([f"{kinds[kind]},{sides(contact, body)}," for kind, contact, body in each], object)[back].tolist()
     impulses = [events[name] for name in ("impulse_normal", "impulse_tangential", "energy_lost")]
     struck = np.flatnonzero(np.any([(values != 0.0) | np.signbit(values) for values in impulses], axis=0))
     pushed = np.full(len(events), NO_IMPULSE, object)
     rows = zip(*(values[struck].tolist() for values in impulses), strict=True)
     pushed[struck] = [f"{normal!r},{tangential!r},{lost!r}," for normal, tangential, lost in rows]
     values = map(repr, events["value"].tolist())
-    return chain.from_iterable(zip(told, said, pushed.tolist(), values, repeat("\r\n")))
+    return chain.from_iterable(zip(instants, causes, pushed.tolist(), values, repeat("\r\n")))
 
 
 def _runs(values: NDArray[Any]) -> tuple[NDArray[Any], NDArray[np.int64]]:

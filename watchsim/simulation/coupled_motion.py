@@ -29,9 +29,9 @@ from watchsim.tolerances import DEPENDENT_IN_STEPS, PAINLEVE, PAINLEVE_WATCHED, 
 
 # Which closed contacts and coordinates act on each other?
 #
-# Coordinates that closed contacts join, or that belong to a free body or to a body and its carrier, form an island. No force or
-# impulse passes from one island to another: every contact problem is posed for one island, and what happens in it leaves the
-# others as they are.
+# Coordinates that closed contacts join, or that belong to a free body or to a body and its carrier, form an island. No force
+# or impulse passes from one island to another: every contact problem is posed for one island, and what happens in it leaves
+# the others as they are.
 
 
 @kernel
@@ -117,8 +117,8 @@ def place_contacts(model, ids, first, last, pose, out_closed):
 
 # How is drift off the contacts taken back?
 #
-# Closed contacts are brought to zero gap, and their gap rates (with the slip of sticking ones) to zero, by the smallest
-# change in the metric of the mass matrix: dq = -M⁻¹ W (Wᵀ M⁻¹ W)⁺ g.
+# Closed contacts are brought to zero gap, and their gap rates (with the slip of sticking ones) to zero, by the smallest change
+# in the metric of the mass matrix: dq = -M⁻¹ W (Wᵀ M⁻¹ W)⁺ g.
 #
 # What is taken back is rounding, so the change must be of its size. Where two force directions are nearly parallel, or one has
 # next to no lever arm (friction on the line of centres), zeroing both rates would move the bodies by far more than the rates
@@ -352,8 +352,6 @@ def _wake(state, label, group):
         if label[i] == group:
             state.awake[i] = 1
 
-
-# How do bodies move while contacts couple them?
 
 NORMAL, TANGENTIAL, EXTENT, PARADOX = range(MONITORS)
 

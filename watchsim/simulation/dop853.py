@@ -16,8 +16,8 @@ from watchsim.simulation.scratch import FLIGHT
 # Which numbers define the method DOP853?
 #
 # Dormand & Prince's pair of orders 8(5,3) with a continuous extension of order 7, coefficients as published by Hairer,
-# Noersett & Wanner, Solving Ordinary Differential Equations I, 2nd ed. (1993), II.5 and II.6. Stage 12 is the first
-# stage of the next step; stages 13 to 15 serve the continuous extension alone.
+# Noersett & Wanner, Solving Ordinary Differential Equations I, 2nd ed. (1993), II.5 and II.6. Stage 12 is the first stage of
+# the next step; stages 13 to 15 serve the continuous extension alone.
 
 STAGES = 12
 
@@ -245,9 +245,6 @@ D = _matrix(
         },
     },
 )
-
-
-# Where is everything at a time within the current step?
 
 
 @kernel

@@ -151,8 +151,6 @@ def first_turn(model, state):
     return first
 
 
-# How is one smooth step made where contacts couple bodies?
-
 # Safety is smaller than usual: the motion of coupled bodies grows sharper from step to step, and repeating a step costs more
 # than shortening it.
 SAFETY, SHRINK, GROW = 0.78, 0.2, 6.0

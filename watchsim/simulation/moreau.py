@@ -340,8 +340,6 @@ def _take_back(state, options, m, work):
     push(work, m, 0, laws.P, state.q)
 
 
-# How does Moreau's time stepping go from step to step?
-
 ROWS_PER_STEP, EVENTS_PER_CONTACT = 3, 2
 
 

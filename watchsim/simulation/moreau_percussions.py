@@ -66,10 +66,10 @@ def fill_mobility(work, m, bearings):
 
 # What may the percussions of a step be, and how far from it are they?
 #
-# Rows are N, T of each of the m closed contacts, then one for each bearing with dry friction. Percussions P make rates b + G P.
-# A normal percussion is at least `low`, and more only where its rate is zero. A tangential one lies within
-# ends[i, 0] + ends[i, 1] N and ends[i, 2] + ends[i, 3] N, N the normal percussion of its contact, that of a bearing within
-# ends[m + k, 0] and ends[m + k, 2]: at the lower end where its rate is positive, at the upper one where that is negative.
+# Rows are N, T of each of the m closed contacts, then one for each bearing with dry friction. Percussions P make rates b + G
+# P. A normal percussion is at least `low`, and more only where its rate is zero. A tangential one lies within ends[i, 0] +
+# ends[i, 1] N and ends[i, 2] + ends[i, 3] N, N the normal percussion of its contact, that of a bearing within ends[m + k, 0]
+# and ends[m + k, 2]: at the lower end where its rate is positive, at the upper one where that is negative.
 
 Array = NDArray[np.float64]
 
@@ -256,9 +256,6 @@ def relax(laws, m, bearings):
                 patience *= 2
         pace *= 0.4
     return total, False
-
-
-# How are impacts resolved in Moreau's time stepping?
 
 
 @kernel

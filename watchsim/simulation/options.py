@@ -80,7 +80,7 @@ def options_for(size: float, tolerance: float, longest: float, natural: float = 
 
 
 def natural_step(compiled: Compiled) -> float:
-    """Longest step (s) by the springs: a quarter of the fastest one's period, so that no turning point hides between two others."""
+    """A quarter of the fastest spring's period (s), so that no turning point hides between two others; infinity without one."""
     return 0.5 * math.pi / compiled.fastest if compiled.fastest else math.inf
 
 

@@ -20,8 +20,7 @@ from watchsim.simulation.trajectory import place_between
 # At which instants of a run are the outlines compared?
 #
 # A contact that is lost shows in a long way without an event: chosen are the longest moves between two recorded rows, and some
-# of
-# the first ones. Within a move there are several instants, by its length.
+# of the first ones. Within a move there are several instants, by its length.
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -92,8 +91,6 @@ def instants_within(before: Array, after: Array, scale: Array, stepped: bool) ->
     left, right = ((at[:, 1 : 1 + n], at[:, 1 + n : 1 + 2 * n], at[:, 1 + 2 * n :]) for at in (first, last))
     return Instants(first[:, 0] + share[:, 0] * h[:, 0], place_between(share, h, left, right), ends)
 
-
-# At which instants could two layers overlap by more than a depth? The compiled sieve before the polygons.
 
 STRETCH = np.dtype(
     [

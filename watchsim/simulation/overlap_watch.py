@@ -149,8 +149,8 @@ def _shifted(points: Array, depth: float, closed: bool) -> Array:
 # Do two layers overlap at some of many instants, by more than a given depth?
 #
 # Both are polygons of chords. A compiled sieve lets pass what stays away (overlap_sieve.py); of the rest polygons judge: one
-# layer is shrunk by that depth, and the other's outline must not reach into it. No gap function of a contact is asked.
-# Points and poses are complex numbers: a pose is (place of the frame's origin, turn of unit size).
+# layer is shrunk by that depth, and the other's outline must not reach into it. No gap function of a contact is asked. Points
+# and poses are complex numbers: a pose is (place of the frame's origin, turn of unit size).
 
 Complex = NDArray[np.complex128]
 Poses = tuple[Complex, Complex]
@@ -312,8 +312,6 @@ def _pairs(scene: Any, chord: float) -> Iterator[PairOfLayers]:
         if all(loops):
             yield PairOfLayers(number, contact.sides, loops, chord)
 
-
-# Was there ever material inside material in a run?
 
 CHORD = 1.0 / 8.0  # of the resolution: deviation of chords from arcs
 TOGETHER = 24  # moves looked at together

@@ -1,6 +1,6 @@
 """Which rows and events stay when the buffers are emptied?
 
-Those within the windows asked for, and where a recording has a tail, those of the last seconds of the run, whenever it ends.
+Those within the windows requested, and where a recording has a tail, those of the last seconds of the run, whenever it ends.
 Of rows also the one before and the one after each of these stretches, so that the motion is known up to its very ends, however
 short it is.
 
@@ -189,8 +189,8 @@ def unevenness(marks: Array) -> Array:
 
 # What can be said of a run without keeping it?
 #
-# Sums over all half swings of its first sprung body and counts of its events, made as the run goes. Events are handed over part
-# by part; what a half swing still needs is carried on. However a run is cut, the same half swings are counted.
+# Sums over all half swings of its first sprung body and counts of its events, made as the run goes. Events are handed over
+# part by part; what a half swing still needs is carried on. However a run is cut, the same half swings are counted.
 
 # Of each half swing: amplitude (rad or m), time since the passage two before (s), unevenness of the ticks and of the passages
 # (s, with the sign of the direction of swing, so that chance does not add up to a beat error).
@@ -287,8 +287,6 @@ def _add(moments: Array, values: Array) -> None:
     moments[3], moments[4] = min(least, values.min()), max(largest, values.max())
 
 
-# Which rows and events stay when the buffers are emptied?
-
 Bits = NDArray[np.bool_]
 
 USUAL_WINDOW = 2.0  # s, over which headline numbers are averaged
@@ -299,19 +297,19 @@ MORE_PERIODS = 4  # what the first of these half swings needs from before
 class Recorder:
     """Rows and events flushed so far, in parts; `tail` is in seconds.
 
-    `told` makes t, q, u, a of rows, and `events_told` events as they are to be kept.
+    `form` makes t, q, u, a of rows, and `event_form` makes events as they are to be kept.
     """
 
     def __init__(
         self,
         recording: Recording,
         tail: float,
-        told: Callable[[Array], Sequence[Array]] | None = None,
-        events_told: Callable[[Events], Events] | None = None,
+        form: Callable[[Array], Sequence[Array]] | None = None,
+        event_form: Callable[[Events], Events] | None = None,
     ) -> None:
         self.recording, self.tail = recording, tail
-        self._told = told or columns_of
-        self._events_told = events_told or (lambda events: events)
+        self._form = form or columns_of
+        self._event_form = event_form or (lambda events: events)
         self._done, self._done_events = Columns(), Columns()  # what stays of earlier parts
         self._ends: list[tuple[int, int]] = []  # how many rows and events that are, after each of them
         self._rows: list[tuple[Array, Bits]] = []  # of later parts, with those that stay for good
@@ -411,14 +409,14 @@ class Recorder:
         """Leave only what stays for good of the earliest open part."""
         rows, row_stays = self._rows.pop(0)
         events, event_stays = self._events.pop(0)
-        told = self._told(rows if row_stays.all() else rows[row_stays])
-        settled = self._events_told(events[event_stays])
+        formed = self._form(rows if row_stays.all() else rows[row_stays])
+        settled = self._event_form(events[event_stays])
         if row_stays.any():
-            self._done.append(told)
+            self._done.append(formed)
         if event_stays.any():
             self._done_events.append([settled])
         if self.follow is not None and (row_stays.any() or event_stays.any()):
-            self.follow(settled, told)
+            self.follow(settled, formed)
         self._ends.append((self._done.rows, self._done_events.rows))
 
     def for_good(self, end: float, parts: int) -> Bits:
@@ -445,8 +443,7 @@ class Recorder:
             return None
         rows = np.concatenate([rows for rows, _ in self._rows])[self._chosen(end)]
         events = [part[bits] for (part, _), bits in zip(self._events, self._chosen_events(end), strict=True)]
-        told = self._events_told(np.concatenate(events))
-        return self._done.all([self._told(rows)]), self._done_events.all([[told]])[0]
+        return self._done.all([self._form(rows)]), self._done_events.all([[self._event_form(np.concatenate(events))]])[0]
 
     def _chosen(self, end: float) -> Bits:
         """Which rows of the open parts are kept of a run that ends now."""

@@ -129,8 +129,6 @@ def _contact(k: int, kinematics: Any, state: State, pairs: Sequence[Pair]) -> di
     }
 
 
-# What is known of where and why a run ended, in words?
-
 ADVICE_STOP_DETAILS = "Try a tighter tolerance; if that does not help, this is a fault of the program, and the scene shows it"
 MANY = 6  # different causes named
 

@@ -11,7 +11,7 @@ import functools
 import signal
 import threading
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import FrameType
 from typing import Any
@@ -55,8 +55,7 @@ from watchsim.tolerances import FIRST_STEP
 # How long may the loop go on before Python looks at clock, progress and interrupts again?
 #
 # A slice ends after a simulated time or a number of steps, whichever comes first: where events crowd, time is no measure of
-# work.
-# How slices end changes no bit of a run.
+# work. How slices end changes no bit of a run.
 
 SLICE_WALL = 0.1  # s between looks at the clock
 FEWEST_STEPS, MOST_STEPS = 16.0, 4000.0  # of a slice; steps may become much slower from one to the next
@@ -125,7 +124,8 @@ def trajectory_of(run: Run, stop: Stop, wall: float, compile_time: float) -> Tra
     """Everything kept of a run that ended with `stop`, as a frozen value; `wall` and `compile_time` in seconds."""
     compiled, state = run.compiled, run.state
     time = float(state.clock.time)
-    (t, q, u, a), events = _all_kept(run)
+    nothing = columns_of(np.zeros((0, 1 + 3 * len(state.q)))), np.zeros(0, EVENT_DTYPE)
+    (t, q, u, a), events = run.kept.closed(time) or nothing
     return Trajectory(
         scene=run.scene,
         t=t,
@@ -158,12 +158,6 @@ def trajectory_of(run: Run, stop: Stop, wall: float, compile_time: float) -> Tra
     )
 
 
-def _all_kept(run: Run) -> tuple[Sequence[NDArray[np.float64]], NDArray[Any]]:
-    """t, q, u, a and the events."""
-    nothing = columns_of(np.zeros((0, 1 + 3 * len(run.state.q))))
-    return run.kept.closed(float(run.state.clock.time)) or (nothing, np.zeros(0, EVENT_DTYPE))
-
-
 def _end_state(run: Run) -> SavedState | None:
     """The state to go on from, with how many of the rows and events that were kept belong to it."""
     if run.saved is None:
@@ -180,26 +174,19 @@ def _words(run: Run, stop: Stop) -> str:
         driven = {body.name for body in run.scene.bodies if body.prescribed is not None}
         failure = failure_of(run.state, run.scratch, run.pairs) if driven else None
         return driven_into(failure, run.pairs, driven) or stop.sentence
-    words = _details(run, stop)
+    model, bodies = run.compiled.model, [body.name for body in run.scene.bodies]
+    details: dict[Stop, Callable[[], str]] = {
+        Stop.OVERLAP: run.watch.words,
+        Stop.LEDGER: lambda: unaccounted(run.energy()),
+        Stop.UNEXPLAINED: lambda: unexplained(run.state, run.pairs),
+        Stop.TOO_MANY_EVENTS: lambda: what_alternates(
+            run.scratch.ended, run.pairs, [bodies[k] for k in model.coordinates.body]
+        ),
+        Stop.FAR_AWAY: lambda: furthest(run.state, model, bodies),
+    }
+    words = details[stop]() if stop in details else ""
     return f"{stop.sentence}: {words}" if words else stop.sentence
 
-
-def _details(run: Run, stop: Stop) -> str:
-    if stop == Stop.OVERLAP:
-        return run.watch.words()
-    if stop == Stop.LEDGER:
-        return unaccounted(run.energy())
-    if stop == Stop.UNEXPLAINED:
-        return unexplained(run.state, run.pairs)
-    if stop == Stop.TOO_MANY_EVENTS:
-        bodies = [run.scene.bodies[coordinate.body].name for coordinate in run.compiled.model.coordinates]
-        return what_alternates(run.scratch.ended, run.pairs, bodies)
-    if stop == Stop.FAR_AWAY:
-        return furthest(run.state, run.compiled.model, [body.name for body in run.scene.bodies])
-    return ""
-
-
-# How does a simulation run from Python, whatever the stepping?
 
 Progress = Callable[[float, float], None]  # simulated time, duration
 
@@ -275,7 +262,10 @@ class Run:
 
     def settings(self) -> dict[str, Any]:
         """What must be the same when a saved state is taken up; the natural step follows from the model."""
-        return {"method": self.method, **{name: float(value) for name, value in self.options._asdict().items() if name != "natural"}}
+        return {
+            "method": self.method,
+            **{name: float(value) for name, value in self.options._asdict().items() if name != "natural"},
+        }
 
     def save(self) -> SavedState:
         """The state now, with the sums over all events so far."""

@@ -19,15 +19,15 @@ from watchsim.mechanism.compile import Compiled
 
 TALLIED = ("kinds", "beats", "moments", "last", "carried")
 LATER = ("returning", "returned")  # not in states of earlier versions: they begin blank
-ASKED = ("method", "step", "tolerance")
+REQUESTED = ("method", "step", "tolerance")
 
 
 @dataclass(frozen=True)
 class SavedState:
     """A state to go on from. `rows` and `events` say how many of its run's kept rows and events lie before it.
 
-    `tally` holds sums over all events before it (see simulation/record/tally.py); `recorded` what decides about the next rows
-    (see `Kept.unfinished`).
+    `tally` holds sums over all events before it (see `Tally` in recording.py); `recorded` what decides about the next rows
+    (see `Recorder.unfinished`).
     """
 
     arrays: dict[str, NDArray[Any]]
@@ -77,12 +77,14 @@ class SavedState:
         changed = [name for name in {**self.settings, **settings} if self.settings.get(name) != settings.get(name)]
         if not changed:
             return
-        asked = [name for name in ASKED if name in changed]
-        told = "; ".join(f"{name} was {self.settings.get(name)}, now {settings.get(name)}" for name in asked[:1] or changed)
-        if not asked:
-            # They follow from what is asked and from the scene, both of which are the same.
-            raise ValueError(f"the saved state was written by another version of watchsim ({told}); begin anew")
-        raise ValueError(f"the saved state was made with other settings ({told}). Use the same ones, or begin anew")
+        requested = [name for name in REQUESTED if name in changed]
+        changes = "; ".join(
+            f"{name} was {self.settings.get(name)}, now {settings.get(name)}" for name in requested[:1] or changed
+        )
+        if not requested:
+            # They follow from what is requested and from the scene, both of which are the same.
+            raise ValueError(f"the saved state was written by another version of watchsim ({changes}); begin anew")
+        raise ValueError(f"the saved state was made with other settings ({changes}). Use the same ones, or begin anew")
 
     def restore(self, arrays: Mapping[str, NDArray[Any]]) -> None:
         """Write the state into `arrays`; ValueError where another version of the package has saved it."""

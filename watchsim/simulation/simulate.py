@@ -86,8 +86,6 @@ class MoreauRun(Run):
         return {**super()._dissipated(), "stepping": float(self.state.sums.correction)}
 
 
-# How is a scene simulated from Python?
-
 Follow = Callable[[Sequence[Pair], NDArray[Any], Sequence[NDArray[Any]]], object]
 
 

@@ -123,9 +123,6 @@ def _furthest(model: Model, change: Array, size: float) -> float:
     return float(np.max(np.abs(change) / model.coordinates.scale * size, initial=0.0))
 
 
-# Do the bodies stand clear of each other when a run begins?
-
-
 def clear_start(scene: Scene, compiled: Compiled, finder: CellFinder, options: Options) -> tuple[Array, float]:
     """The coordinates at which the run begins, where no touching contact overlaps, and the overlap taken back (m).
 

@@ -263,8 +263,6 @@ def keep_inner_rows(model, options, end, step, record):
         record.used.rows = row + 1
 
 
-# Along which path do bodies move within a step, and how sharply can it bend?
-
 DEGREE = 7
 # The continuous extension is y0 + sum of dense[t] x^a (1 - x)^b, with these exponents (a, b).
 TERMS = ((1, 0), (1, 1), (2, 1), (2, 2), (3, 2), (3, 3), (4, 3))

@@ -106,8 +106,8 @@ def _on(carrier: Array, own: Array) -> Array:
 
 # What comes out of a simulation?
 #
-# A frozen value: rows of time, coordinates, velocities and accelerations, and a table of events. Everything after it
-# (beats, plots, movies) is a function of it.
+# A frozen value: rows of time, coordinates, velocities and accelerations, and a table of events. Everything after it (beats,
+# plots, movies) is a function of it.
 
 NO_ROW = "no row of this run was kept, so where its bodies were is not known"
 AT_ONCE = 1000  # times that are looked up together where rows lie in a file: those of a stretch of it, in order
@@ -303,9 +303,6 @@ def place_between(s: Array, h: Array, left: tuple[Array, ...], right: tuple[Arra
     c4 = -15.0 * d + 8.0 * u0 + 7.0 * u1 + 1.5 * a0 - a1
     c5 = 6.0 * d - 3.0 * (u0 + u1) - 0.5 * (a0 - a1)
     return q0 + s * (u0 + s * (0.5 * a0 + s * (c3 + s * (c4 + s * c5))))
-
-
-# How do two parts of one motion become one trajectory?
 
 
 def joined(first: Trajectory, rest: Trajectory, folder: Path | None = None) -> Trajectory:

@@ -130,14 +130,14 @@ def is_mapped(array: NDArray[Any]) -> bool:
 
 
 def blocks(*arrays: NDArray[Any], length: int = BLOCK) -> Iterator[tuple[NDArray[Any], ...]]:
-    """The arrays piece by piece, in step; each piece is let go when the next one is asked for."""
+    """The arrays piece by piece, in step; each piece is let go when the next one is requested."""
     for first in range(0, len(arrays[0]), length):
         yield tuple(array[first : first + length] for array in arrays)
         let_go(*arrays)
 
 
 def rows_where(array: NDArray[Any], is_wanted: Callable[[NDArray[Any]], NDArray[np.bool_]]) -> NDArray[Any]:
-    """The rows for which `is_wanted`, asked of piece after piece, is true: of a mapped array a piece at a time is in memory."""
+    """The rows for which `is_wanted` is true: of a mapped array a piece at a time is in memory."""
     found = [part[is_wanted(part)] for (part,) in blocks(array)]
     return np.concatenate(found) if found else array[:0]
 
@@ -181,9 +181,6 @@ class LongText:
         with path.open("wb") as file:
             for (part,) in blocks(self._bytes, length=PIECE):
                 file.write(part.tobytes())
-
-
-# How is a long array read from an archive without memory for all of it?
 
 
 def unpacked(archive: np.lib.npyio.NpzFile, name: str, folder: Path) -> NDArray[Any]:

@@ -143,8 +143,6 @@ def second_places() -> Iterator[Path]:
     yield from found
 
 
-# How does a file that is made without a name get one?
-
 PIECE = 1 << 20  # bytes that are copied at a time
 
 

@@ -24,8 +24,7 @@ from watchsim import stopping
 # What must be on the disk before the next step may be taken?
 #
 # A rename may reach the disk before the bytes of what was renamed: after a power cut there would be an empty file under the
-# final
-# name. So everything is synchronised first.
+# final name. So everything is synchronised first.
 
 AT_ONCE = 8  # files
 CANNOT = (errno.EINVAL, errno.ENOTSUP, errno.EACCES, errno.EPERM, errno.EBADF, errno.EISDIR)
@@ -256,8 +255,6 @@ def abandon() -> None:
             scratch.clear()
 
 
-# How is a file or a folder written whole or not at all?
-
 Ours = Callable[[str], bool]  # of a path in the folder, with slashes: is it a file of ours, which may be replaced?
 
 
@@ -295,7 +292,7 @@ def write_file(target: Path, fill: Callable[[Path], object], what: str) -> None:
     OSError where that fails, with `what` could not be written: what was there before is then still there, and nothing else.
     """
     place = real(target)
-    with _told(what, target), scratch_in(place.parent) as scratch:
+    with _explained(what, target), scratch_in(place.parent) as scratch:
         scratch.new.mkdir()
         made = scratch.new / f"file{place.suffix.lower()}"
         fill(made)
@@ -311,7 +308,7 @@ def write_folder(target: Path, fill: Callable[[Path], object], ours: Ours, what:
     still there, and nothing else.
     """
     place = real(target)
-    with _told(what, target), scratch_in(place.parent) as scratch:
+    with _explained(what, target), scratch_in(place.parent) as scratch:
         scratch.new.mkdir()
         fill(scratch.new)
         sync_tree(scratch.new)
@@ -325,7 +322,7 @@ def write_folder(target: Path, fill: Callable[[Path], object], ours: Ours, what:
 
 
 @contextlib.contextmanager
-def _told(what: str, target: Path) -> Iterator[None]:
+def _explained(what: str, target: Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:
