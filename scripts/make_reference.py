@@ -9,12 +9,15 @@ import dataclasses
 import enum
 import importlib
 import inspect
+import math
 import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import watchsim
+from watchsim import units
+from watchsim.scene import keys
 
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = Path(watchsim.__file__).resolve().parent  # installed or not
@@ -77,7 +80,68 @@ PAGES = {
 def pages() -> dict[str, str]:
     """File name -> text of every page."""
     made = {f"{page}.md": page_text(title, names) for page, (title, names) in PAGES.items()}
-    return {"README.md": contents(), **made}
+    return {"README.md": contents(), **made, "keys.md": keys_page()}
+
+
+def keys_page() -> str:
+    """Every key that a scene file may hold, from the table by which scenes are read."""
+    note = "Made from `watchsim/scene/keys.py` by `python scripts/make_reference.py`; not edited by hand."
+    parts = [f"# Keys of a scene file\n\n{note} [The scene file](../guide/scene-file.md) explains them with examples.\n"]
+    for name, section in keys.SECTIONS.items():
+        headings = {keys.NAMED_TABLES: f"[{name}.NAME]", keys.TABLES_LISTED: f"[[{name}]]"}
+        parts += [f"\n## {headings.get(section.form, f'[{name}]')}\n", *key_rows(section, name)]
+    return "".join(parts)
+
+
+def key_rows(table: keys.Key, path: str) -> Iterator[str]:
+    """The table of the keys within one, then those of the tables in them."""
+    if table.doc:
+        yield f"\n{table.doc[0].upper()}{table.doc[1:]}.\n"
+    if table.inner:
+        yield "\n| key | what | value | range | default |\n|---|---|---|---|---|\n"
+    for name, key in table.inner.items():
+        notes = [f"; {' or '.join(key.motions)} only" if key.motions else "", "; required" if key.required else ""]
+        yield (f"| `{name}` | {key.doc}{''.join(notes)} | {value_of(key)} | {range_of(key)} | {default_of(key)} |\n")
+    for name, key in table.inner.items():
+        if key.inner:
+            yield f"\n### {path}: {name}\n"
+            yield from key_rows(key, f"{path}: {name}")
+
+
+def value_of(key: keys.Key) -> str:
+    if key.choices:
+        return ", ".join(f'`"{choice}"`' for choice in key.choices)
+    kinds = " or ".join(one.name for one in (key.dimension, key.linear) if one is not None)
+    holder = {keys.PAIR: "two of: ", keys.POINTS: "list of points: "}.get(key.form, "")
+    return f"{holder}{kinds}" if kinds else key.form
+
+
+def range_of(key: keys.Key) -> str:
+    """The limits, but for what is too small to compute with, in the unit of messages."""
+    found = []
+    for limit in key.limits:
+        if limit.message == keys.TOO_SMALL or key.dimension is None:
+            continue
+        for end, words in ((limit.low, ("from", "above")), (limit.high, ("to", "below"))):
+            is_open = limit.open == ("low" if end == limit.low else "high")
+            found += [f"{words[is_open]} {in_unit(end, key)}"] if math.isfinite(end) else []
+        found += ["not 0"] if limit.apart else []
+    return " ".join(dict.fromkeys(found))
+
+
+def default_of(key: keys.Key) -> str:
+    if key.absent or key.default == 0.0 or key.dimension is None:
+        return key.absent
+    return in_unit(key.default, key)
+
+
+def in_unit(value: float, key: keys.Key) -> str:
+    assert key.dimension is not None
+    return (
+        "0"
+        if value == 0.0 or not math.isfinite(value)
+        else units.show(value, key.dimension.usual[1] if key.dimension.si else "")
+    )
 
 
 def contents() -> str:
@@ -88,6 +152,7 @@ def contents() -> str:
         for name in names:
             shown, thing = found(name)
             parts.append(f"| [`{shown}`]({page}.md#{anchor(shown)}) | {first_sentence(thing)} |\n")
+    parts.append("\n## [Keys of a scene file](keys.md)\n")
     return "".join(parts)
 
 
@@ -100,7 +165,7 @@ def found(name: str) -> tuple[str, Any]:
     module, _, record = name.rpartition(":")
     if not module:
         return f"ws.{name}", getattr(importlib.import_module("watchsim"), name)
-    shown = f"ws.designs.{record}" if module == "watchsim.designs" else record
+    shown = f"ws.designs.{record}" if module == "watchsim.designs" and record.islower() else record
     return shown, getattr(importlib.import_module(module), record)
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+
 import pytest
 from made_scenes import drawing, square
 
@@ -9,7 +11,7 @@ from watchsim.drawing.findings import Finding
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Line
 from watchsim.scene.errors import SceneError
-from watchsim.scene.load import load
+from watchsim.scene.load import from_mapping, load
 
 POLYGON = 'polygon = [["-1 mm", "0 mm"], ["1 mm", "0 mm"], ["0 mm", "3 mm"]]'
 SOLID = '[[bodies.wheel.solids]]\nlayer = "TEETH"\nthickness = "0.12 mm"\ndensity = "7.85 g/cm³"\n'
@@ -478,3 +480,35 @@ def test_a_misspelt_table_keeps_its_lines_and_its_faults(desk, good):
 def test_the_body_of_a_spring_may_be_anything_beside_gears(desk, good):
     gears = '[[gears]]\nbetween = ["wheel", "lever"]\nratio = 2\n'
     assert "a text in quotes is needed" in only(good.replace('body = "balance"\nfreq', "body = []\nfreq") + gears, desk)
+
+
+def calls_of_refusing(mapping):
+    """How many functions are called until the mapping is refused, and with which error."""
+    count = 0
+
+    def note(_frame, event, _arg):
+        nonlocal count
+        count += event == "call"
+
+    sys.setprofile(note)
+    try:
+        from_mapping(mapping, None)
+    except SceneError as error:
+        return count, error
+    finally:
+        sys.setprofile(None)
+    raise AssertionError("nothing was refused")
+
+
+MANY = [
+    lambda n: {"bodies": {"a": {"inertia": "1 g·cm²", **{f"k{i}": i for i in range(n)}}}},
+    lambda n: {"bodies": {"a": {"inertia": "1 g·cm²"}}, **{f"k{i}": {} for i in range(n)}},
+    lambda n: {"bodies": {"a": {"inertia": "1 g·cm²"}}, "springs": [{"body": "a", "stifness": "1 N·m/rad"}] * n},
+]
+
+
+@pytest.mark.parametrize("made", MANY)
+def test_many_slips_take_work_in_proportion(made):
+    (few, _), (many, error) = calls_of_refusing(made(400)), calls_of_refusing(made(1600))
+    assert many < 5 * few
+    assert ("1499 more after it" in str(error)) or (len(error.faults) == 1600 and "and 1100 more faults" in str(error))

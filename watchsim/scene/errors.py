@@ -8,6 +8,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+MOST_SHOWN = 500  # faults in the text of an error
+
 
 @dataclass(frozen=True, slots=True)
 class Fault:
@@ -25,11 +27,14 @@ class Fault:
 
 
 class SceneError(ValueError):
-    """A scene that cannot be simulated. `faults` holds every fault found; the text lists them all."""
+    """A scene that cannot be simulated. `faults` holds every fault found; the text lists them, of very many the first."""
 
     def __init__(self, faults: tuple[Fault, ...] | list[Fault]) -> None:
         self.faults = tuple(faults)
-        super().__init__("\n".join(str(fault) for fault in self.faults))
+        lines = [str(fault) for fault in self.faults[:MOST_SHOWN]]
+        if len(self.faults) > MOST_SHOWN:
+            lines.append(f"... and {len(self.faults) - MOST_SHOWN} more faults. Mend these first")
+        super().__init__("\n".join(lines))
 
 
 @dataclass
@@ -63,16 +68,18 @@ class Faults:
             raise SceneError(sorted(self.found, key=lambda fault: self._line(fault.key) or 0))
 
     def _place(self, key: str) -> str:
-        if any(key == changed or key.startswith(changed + ".") for changed in self.changed):
+        if self.changed and any(key == changed or key.startswith(changed + ".") for changed in self.changed):
             return self.by
         line = self._line(self._written(key))
         return f"{self.file}:{line}" if line else self.file
 
     def _written(self, key: str) -> str:
         """The key as it stands in the file."""
-        for meant in sorted(self.spelt, key=len, reverse=True):
-            if key == meant or key.startswith(meant + "."):
+        meant = key if self.spelt else ""
+        while meant:  # the longest first
+            if meant in self.spelt:
                 key = self.spelt[meant] + key.removeprefix(meant)
+            meant = meant.rpartition(".")[0]
         return key
 
     def _line(self, key: str) -> int | None:

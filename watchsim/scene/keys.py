@@ -12,6 +12,7 @@ import difflib
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from functools import lru_cache
 
 from watchsim import units
 from watchsim.model import TANGENTIAL_CODE
@@ -350,7 +351,7 @@ TIMEGRAPHER: Keys = {
         "arc of the balance during which it touches the lever",
         limits=(
             *_above_zero("it is the arc of the balance during which it touches the lever"),
-            Limit(0.0, math.tau, "must be below a full turn", "high"),
+            Limit(-math.inf, math.tau, "must be below a full turn", "high"),
         ),
     ),
     "frequency": Key(
@@ -435,7 +436,11 @@ def belongs(key: str) -> str:
 
 def closest(word: str, known: Iterable[str]) -> str | None:
     """The known word that was probably meant."""
-    words = list(known)
+    return _closest(word, tuple(known))
+
+
+@lru_cache(maxsize=4096)  # one slip is often made in every table, and looking is slow
+def _closest(word: str, words: tuple[str, ...]) -> str | None:
     folded = [one for one in words if one.casefold() == word.casefold()]
     return next(iter(folded or difflib.get_close_matches(word, words, n=1, cutoff=ALIKE)), None)
 
