@@ -232,12 +232,13 @@ def test_times_may_carry_their_units() -> None:
 SCRIPT = """
 from watchsim.dynamics import acceleration, impact
 from watchsim.dynamics.lcp import LcpOutcome
-from watchsim.dynamics.lcp import Rung
+from watchsim.dynamics.lcp import Solver
 
-def unsolvable(work, m, elements):
-    work.posed.lemke = LcpOutcome.RAY
-    work.rungs[Rung.FAILED] += 1
-    return Rung.FAILED
+def unsolvable(m, elements, bearings, level, problem):
+    last = problem.last
+    last.contacts, last.elements, last.bearings, last.level, last.lemke = m, elements, bearings, level, LcpOutcome.RAY
+    problem.solvers[Solver.FAILED] += 1
+    return Solver.FAILED
 
 impact.solve_contacts = acceleration.solve_contacts = unsolvable
 from watchsim.cli import main
