@@ -34,7 +34,7 @@ PAGES = {
             "watchsim.scene.scene:Recording",
         ],
     ),
-    "designs": ("Designs", ["watchsim.designs:names", "watchsim.designs.maker:Maker", "watchsim.designs.drawn:Drawn"]),
+    "designs": ("Designs", ["watchsim.designs:names", "watchsim.designs:Maker", "watchsim.designs:Drawn"]),
     "drawings": ("Drawings and outlines", ["read", "Drawing", "watchsim.drawing.findings:Finding", "Profile"]),
     "contact": ("Distances and contact kinematics", ["distance", "watchsim.mechanism.distance:Distance", "gap", "kinematics"]),
     "simulation": ("Simulation", ["simulate", "Trajectory", "EventKind", "Stop"]),

@@ -91,7 +91,7 @@ def draw_anew(item: pytest.Item) -> None:
 def compile_largest() -> None:
     """By both methods, a scene that moves at once."""
     import watchsim
-    from watchsim.simulation.state import METHODS
+    from watchsim.simulation import METHODS
 
     scene = watchsim.load(watchsim.profiles_dir() / "incline")
     for method in METHODS:

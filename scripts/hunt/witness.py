@@ -16,8 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hunt.open_motion import open_motion
+from watchsim.simulation import MOREAU
 from watchsim.simulation.simulate import simulate
-from watchsim.simulation.state import MOREAU, EventKind
+from watchsim.simulation.state import EventKind
 from watchsim.simulation.trajectory import Trajectory
 
 if TYPE_CHECKING:

@@ -36,23 +36,22 @@ AREAS = {  # name -> (files, tests)
     ),
     "pictures": (
         (
-            "render/movies/run_movie.py",
-            "render/frame/pose_history.py",
-            "render/figures/speed_plot.py",
-            "render/frame/marks/readouts.py",
-            "render/movies/encoder.py",
-            "render/movies/busy_stretches.py",
+            "render/movie.py",
+            "render/view.py",
+            "render/phase_bands.py",
+            "render/marks.py",
+            "render/encoder.py",
             "render/keyframes.py",
-            "render/fewest_rows.py",
+            "render/rows.py",
         ),
         ("tests/render", RECORDS),
     ),
     "plain": (
-        ("dynamics/**/*.py", "candidates/*.py", "contact/*.py", "simulation/**/*.py", "tolerances.py"),
+        ("dynamics/**/*.py", "contact/*.py", "simulation/**/*.py", "tolerances.py"),
         ("tests/dynamics", "tests/candidates", "tests/contact", "tests/simulation", QUOTED),
     ),
     "kernels": (
-        ("dynamics/**/*.py", "candidates/*.py", "contact/*.py", "simulation/**/*.py", "tolerances.py"),
+        ("dynamics/**/*.py", "contact/*.py", "simulation/**/*.py", "tolerances.py"),
         ("tests/dynamics", "tests/candidates", "tests/contact", "tests/simulation", QUOTED),
     ),
 }

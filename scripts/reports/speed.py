@@ -30,8 +30,8 @@ from watchsim.commands.bench import measured, write
 from watchsim.paths import profiles_dir
 from watchsim.render.phase_bands import plot_speed
 from watchsim.scene.load import load
+from watchsim.simulation import MOREAU
 from watchsim.simulation.simulate import simulate
-from watchsim.simulation.state import MOREAU
 
 ROOT = Path(__file__).resolve().parents[2]
 OWN = "pfeiffer-glocker"

@@ -19,7 +19,8 @@ from watchsim.analysis.headlines import doubts, expected_text, with_scatter
 from watchsim.analysis.summary import NUMBERS, summary, summary_text, tables, with_error_bars
 from watchsim.mechanism.compile import scene_size
 from watchsim.scene.scene import Expectation
-from watchsim.simulation.state import MOREAU, Stop
+from watchsim.simulation import MOREAU
+from watchsim.simulation.state import Stop
 
 # Does the summary hold every promised number, and does its text read as a watchmaker expects?
 

@@ -21,7 +21,7 @@ from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Line
 from watchsim.paths import profiles_dir
 from watchsim.scene.load import load
-from watchsim.simulation.state import EVENT_DRIVEN, MOREAU
+from watchsim.simulation import EVENT_DRIVEN, MOREAU
 
 # Is the comparison fair and told in full: right errors, spread, references that another method confirms?
 

@@ -25,7 +25,7 @@ COMMAND = """
 import os, signal, sys
 case, *sys.argv[1:] = sys.argv[1:]
 os.sched_getaffinity = lambda _: {0} if case == "one core" else {0, 1}
-from watchsim.render.figures import kinematics_plot
+from watchsim.render import kinematics_plot
 write, first = kinematics_plot.write_png, os.getpid()
 def write_png(*what):
     print("here" if os.getpid() == first else "beside", flush=True)

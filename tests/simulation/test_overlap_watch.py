@@ -16,11 +16,12 @@ from watchsim.mechanism.compile import compile_scene
 from watchsim.results.folder import read_results, write_results
 from watchsim.scene.forces import Contact, Side
 from watchsim.scene.scene import WHOLE_RUN, Body, Scene
+from watchsim.simulation import EVENT_DRIVEN, MOREAU
 from watchsim.simulation.overlap_sieve import BLOCK, EARLY, chosen_moves
 from watchsim.simulation.overlap_watch import Layers, OverlapWatch, PairOfLayers
 from watchsim.simulation.runner import Run
 from watchsim.simulation.simulate import simulate
-from watchsim.simulation.state import EVENT_DRIVEN, MOREAU, Stop
+from watchsim.simulation.state import Stop
 
 # Is material inside material found in a run whose contacts were lost, and nothing reported of sound ones?
 

@@ -16,9 +16,10 @@ from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Edge
 from watchsim.scene.forces import Damping
 from watchsim.scene.scene import Body, Scene
+from watchsim.simulation import METHODS, MOREAU
 from watchsim.simulation.options import natural_step, options_for
 from watchsim.simulation.simulate import simulate
-from watchsim.simulation.state import METHODS, MOREAU, NO_CONTACT, USUAL_STEP, EventKind, new_state
+from watchsim.simulation.state import NO_CONTACT, USUAL_STEP, EventKind, new_state
 
 # Which tolerances and rooms has a run? Against the numbers of the method, for a scene of any size.
 

@@ -219,9 +219,9 @@ def test_many_balls_in_a_row_on_the_ground() -> None:
 
 LONG_FLIGHT = """
 from moving_scenes import profile
-from watchsim.candidates import cell_grid
+from watchsim.contact import cells
 from watchsim.simulation.simulate import simulate
-cell_grid.FEW_CONTACTS = 10**9
+cells.FEW_CONTACTS = 10**9
 print(simulate(profile("bench_lever"), 0.05).stop.name)
 """
 

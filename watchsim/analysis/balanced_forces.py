@@ -20,10 +20,8 @@ from watchsim.simulation.trajectory import Array as Array_of_trajectory
 from watchsim.simulation.trajectory import Trajectory
 from watchsim.storage.columns import blocks
 
-# Which contacts are in force at some times of a run, and in which mode?
-#
-# Events say how modes change. At the first of the times a contact's mode follows from the last event of its own; from there on
-# each event is followed.
+# Events say how modes change. At the first of the times a contact's mode follows from the last event of its own; from there
+# on each event is followed.
 
 MODES = (EventKind.CLOSE, EventKind.OPEN, EventKind.STICK, EventKind.SLIDE, EventKind.HANDOVER)
 
@@ -120,8 +118,6 @@ def change(modes: dict[int, int], kind: int, contact: int, value: float) -> None
     else:
         modes[contact] = int(value)
 
-
-# Which forces balance the same contacts, in the same modes, at many instants?
 
 Array = NDArray[np.float64]
 

@@ -14,8 +14,6 @@ from watchsim.scene.trains import start_poses
 from watchsim.simulation.trajectory import Trajectory, frames
 from watchsim.tolerances import LEDGER_SHARE
 
-# What have weights given by falling?
-
 
 def work_of_gravity(run: Trajectory) -> float:
     """J from the start to the end: what the ledger of a run takes for work of the drive is only lent and given back."""
@@ -30,9 +28,6 @@ def work_of_gravity(run: Trajectory) -> float:
         way = np.diff(poses[:, :2] + np.stack((c * cx - s * cy, s * cx + c * cy), axis=1), axis=0)[0]
         total += body.mass * float(way @ np.array(scene.gravity))
     return total
-
-
-# Where did the energy go?
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,9 +55,6 @@ def energy_shares(run: Trajectory) -> Shares:
     went = {cause: float(value) for cause, value in ledger.get("dissipated", {}).items()}
     went["stored"], went["given back to the drive"] = max(stored, 0.0), max(-drive, 0.0)
     return Shares(supplied, {cause: value / supplied for cause, value in went.items() if value != 0.0}, max(-stored, 0.0))
-
-
-# Which share of what the drive puts in reaches the oscillator?
 
 
 def efficiency(run: Trajectory) -> float | None:

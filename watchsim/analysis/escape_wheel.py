@@ -16,8 +16,6 @@ from watchsim.simulation.state import EventKind
 from watchsim.simulation.trajectory import Array, Trajectory
 from watchsim.storage.columns import blocks, rows_where
 
-# Why does a run give no amplitude, or no rate?
-
 
 def why_no_timing(run: Trajectory, found: Beats | None, numbers: Mapping[str, Any], start: float = 0.0) -> str | None:
     """A sentence for people; None where amplitude and rate are known, or where nothing could keep time anyway.
@@ -81,9 +79,6 @@ def _went(run: Trajectory, body: str) -> float:
 
 def _times(count: int) -> str:
     return {0: "not once", 1: "only once", 2: "only twice"}.get(count, f"only {count} times")
-
-
-# How far did the escape wheel go, and did it miss a beat?
 
 
 @dataclass(frozen=True)
@@ -151,8 +146,6 @@ def _of_parity(half_swings: Array, parity: int) -> Array:
     """How many half swings of that parity there were before each of these."""
     return np.floor((half_swings + (1.0 - parity)) / 2.0)
 
-
-# Does the watch still tick, and if not, since when and held by what?
 
 HALF_SWINGS = 3  # without any advance of the wheel: the watch stands
 SMALLEST_ADVANCE = 0.01  # rad, for a wheel whose pitch is not known

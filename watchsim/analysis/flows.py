@@ -21,8 +21,6 @@ from watchsim.model import FREE, OVER_TIME, REPEATED, Model
 from watchsim.simulation.state import EventKind
 from watchsim.simulation.trajectory import Array, Trajectory, frames, speeds
 
-# What have springs between points of bodies stored at the rows of a run, and what do they take and get on the way?
-
 
 def line_spring_energies(model: Model, q: Array) -> Array:
     """(rows,), J."""
@@ -68,8 +66,6 @@ def _coordinates(model: Model, body: int) -> list[int]:
         return []
     return list(range(first, first + (3 if model.bodies[body].motion == FREE else 1)))
 
-
-# What do impacts take in each phase, by pair of bodies?
 
 LOSSES = (EventKind.IMPACT, EventKind.JAM)
 
@@ -124,8 +120,6 @@ def pair_name(run: Trajectory, contact: int) -> str:
     pair = run.pairs[contact]
     return "-".join(sorted((pair.body_a, pair.body_b), key=[body.name for body in run.scene.bodies].index))
 
-
-# Where was the energy of a run at its rows, and what has flowed between them, friction and impacts of contacts apart?
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(5)
 QUIET = 1e-12  # of the forces that act: an acceleration that they explain to this owes nothing to contacts
@@ -314,9 +308,8 @@ def _damping_power(model: Model, u: Row) -> Array:
     return power
 
 
-# What do the contacts take by friction, pair by pair, in a stretch of time?
-#
-# Worked out from forces and slip at the contacts, not from what is missing in the books: that the two agree is a check of both.
+# Worked out from forces and slip at the contacts, not from what is missing in the books: that the two agree is a check of
+# both.
 
 
 def friction_by_pair(run: Trajectory, ends: Sequence[float]) -> list[dict[str, float]]:

@@ -20,18 +20,14 @@ from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.scene.roles import loads
 from watchsim.scene.scene import STATISTICS, Gear, Scene
 from watchsim.scene.trains import Ride, rides, ungeared
-from watchsim.simulation.state import EVENT_DRIVEN
+from watchsim.simulation import EVENT_DRIVEN
 from watchsim.simulation.trajectory import Array as Array_of_trajectory
 from watchsim.simulation.trajectory import Trajectory
 
-# Which forces do the teeth exert that [[gears]] stand for?
-#
 # What a body's own equation of motion leaves over, with every body freed of its gears, is the torque of its teeth; of gears
-# with
-# play it is that of their racks. The force acts at the pitch point, where both bodies run alike, along the line of action,
-# which
-# leans from the common tangent by the pressure angle so that it presses the bodies apart (Niemann, Winter: Maschinenelemente
-# II).
+# with play it is that of their racks. The force acts at the pitch point, where both bodies run alike, along the line of
+# action, which leans from the common tangent by the pressure angle so that it presses the bodies apart (Niemann, Winter:
+# Maschinenelemente II).
 
 
 class Pressed(NamedTuple):
@@ -215,9 +211,6 @@ def _on_the_planet(
     across = np.stack((-e[:, 1], e[:, 0]), axis=1)
     lean = math.copysign(math.tan(gear.pressure_angle), radius)
     yield Pressed(planet, along[:, None] * across + lean * np.abs(along)[:, None] * e)
-
-
-# Which forces act at contacts and pivots, at any time of a run?
 
 
 @dataclass(frozen=True)

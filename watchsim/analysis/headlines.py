@@ -17,11 +17,9 @@ from watchsim.analysis.timing import Beats
 from watchsim.analysis.verdict_kinds import BESIDE
 from watchsim.mechanism.compile import scene_size
 from watchsim.scene.roles import keeps_time
-from watchsim.simulation.state import MOREAU
+from watchsim.simulation import MOREAU
 from watchsim.simulation.trajectory import Trajectory
 from watchsim.units import metric
-
-# Why should the numbers of a run not be trusted?
 
 UNSOLVED = 1e-6  # share of a contact problem's largest term: what rounding leaves lies far below
 COARSE = 5e-3  # overlap as a share of the mechanism's size, beyond which a step has lost the shapes that touch
@@ -42,8 +40,6 @@ def doubts(run: Trajectory) -> Iterator[str]:
             f'Take a shorter one, such as --step "{1e6 * run.step / FINER:.2g} µs", until the numbers no longer change'
         )
 
-
-# How are beats and phases written for other programs?
 
 BEAT_COLUMNS = ("beat", "t_s", "tick_s", "turn_s", "turn_at", "amplitude", "period_s", "rate_s_per_d", "beat_error_ms")
 PARTS = ("wheel", "lever", "balance")
@@ -120,8 +116,6 @@ def _row(fields: Sequence[str]) -> str:
 def _lines(columns: Sequence[Sequence[str]]) -> str:
     return "".join(map(_row, zip(*columns, strict=True)))
 
-
-# What does a watchmaker want to read first?
 
 LABEL = 13
 EXACT = 6  # decimals at most

@@ -99,8 +99,6 @@ def in_columns(rows: Sequence[Stretch]) -> Stretches:
     return Stretches(np.array(beat, np.int64), next(codes), np.array(start, float), np.array(end, float), next(codes), words)
 
 
-# When does the escape wheel touch what, and where does it stand then?
-
 TOUCH = (EventKind.IMPACT, EventKind.CLOSE)
 
 
@@ -147,12 +145,9 @@ def _face(pair: Pair, parts: Roles) -> str:
     return "tooth" if pair.body_b == parts.wheel else "stone"  # the second of a pair holds the line or the rounder arc
 
 
-# When does the wheel push an anchor that swings as one with the oscillator, when does it let go, when does it lock?
-#
 # Such a beat has no unlocking of its own: the tooth slides from the locking face onto the impulse face (dead-beat), or turns
 # back with the wheel until the anchor returns (recoil). Only where the tooth comes off its rest before it meets the face that
-# is
-# pushed, as at the lips of a cylinder or in the notch of a duplex, is there an unlocking, and a catching up after it.
+# is pushed, as at the lips of a cylinder or in the notch of a duplex, is there an unlocking, and a catching up after it.
 
 STANDING = 1e-6  # of the wheel's advance in a beat: it has not moved
 NEAR_REST = 0.1  # of the wheel's advance in the beat: a free run that ends so near to rest may be the drop
@@ -201,8 +196,6 @@ def anchor_marks(
     return Marks(moved, freed, caught, let_off, lock)
 
 
-# What are the phases of the beats of an anchor that swings as one with the oscillator? (See `phases`.)
-#
 # Impulse, drop, then it is locked, or recoils where the wheel turns back.
 
 RECOIL = 1e-3  # of the wheel's advance in a beat: a wheel that turns back less is led by a dead-beat anchor
@@ -251,12 +244,9 @@ def _next_ones(marks: list[Marks | None], told: NDArray[np.bool_]) -> Iterator[M
         yield marks[i] or second
 
 
-# What are the phases of the beats of two pallets that are hinged on the oscillator? (See `phases`.)
-#
 # A grasshopper has no lock and no drop: a tooth stays with its pallet until the other pallet has caught another tooth. The
-# wheel
-# turns back until the oscillator turns (recoil) and then pushes by the same pallet, until the other one catches and lets the
-# first go (impulse).
+# wheel turns back until the oscillator turns (recoil) and then pushes by the same pallet, until the other one catches and
+# lets the first go (impulse).
 
 TOUCH_HINGED_PHASES = (EventKind.IMPACT, EventKind.CLOSE)
 
@@ -314,8 +304,6 @@ def _marks(run: Trajectory, wheel: str, span: tuple[float, float]) -> tuple[floa
     return (float(t[back]), float(t[furthest])) if furthest > back else None
 
 
-# What are the phases of the beats of a lever, in whatever order it unlocks, is pushed and locks? (See `phases`.)
-#
 # All beats are looked at together: a run of a day has half a million.
 
 Ints = NDArray[np.int64]
@@ -434,8 +422,6 @@ def _impulses(contacts: WheelContacts, marks: MarksLeverPhases) -> tuple[Ints, A
     goes_on = np.append(of[1:] == of[:-1], False)[: len(of)]
     return of, t[k], np.where(goes_on, np.append(t[k][1:], np.nan)[: len(of)], t[marks.let_off][of]), contacts.on[k]
 
-
-# What happens between two beats, when, and how far does each part turn meanwhile?
 
 AT_ONCE_PHASES = 300  # beats; their rows are some megabytes, which a processor has at hand
 

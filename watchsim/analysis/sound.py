@@ -23,11 +23,9 @@ from watchsim.simulation.trajectory import Array as Array_of_trajectory
 from watchsim.simulation.trajectory import Trajectory
 from watchsim.storage.write import write_file
 
-# What does one blow sound like?
-#
-# A case rings on a few tones that die away. Which ones is no result of the simulation: these are typical of a small watch on a
-# microphone. When a blow sounds and how loud is: it begins at its instant, between samples too, with an amplitude that grows
-# with the root of the energy lost.
+# A case rings on a few tones that die away. Which ones is no result of the simulation: these are typical of a small watch on
+# a microphone. When a blow sounds and how loud is: it begins at its instant, between samples too, with an amplitude that
+# grows with the root of the energy lost.
 #
 # A tone that dies away is one complex number per blow, turned and shrunk from sample to sample: y[n] = z y[n-1] + x[n]. Tails
 # are therefore exact however long, and a sound can be made block by block.
@@ -65,8 +63,6 @@ class Ringing:
         return out
 
 
-# Which blows sound when, for as long as requested?
-#
 # Those of the run; where the sound is to be longer, its last oscillations over and over. They are cut in the silence before a
 # beat, a whole number of oscillations apart, and a whole turn of the escape wheel where there is one, so that nothing jumps.
 
@@ -147,8 +143,6 @@ def _loop(run: Trajectory, begun: float) -> Loop:
     count = turn * (steps // turn) if steps >= turn else steps
     return Loop(float(ticks[same[-1 - count]]), float(ticks[same[-1]]), count)
 
-
-# How does the sound of a run become a WAV file?
 
 BLOCK = SAMPLES
 FULL = 0.9 * 32767.0

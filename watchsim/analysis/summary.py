@@ -28,15 +28,14 @@ from watchsim.results.tables import plain
 from watchsim.scene.keys import ALIKE
 from watchsim.scene.roles import keeps_time, roles, swings
 from watchsim.scene.scene import Expectation
+from watchsim.simulation import MOREAU
 from watchsim.simulation.runner import Progress
 from watchsim.simulation.simulate import simulate
-from watchsim.simulation.state import MOREAU, EventKind, Stop
+from watchsim.simulation.state import EventKind, Stop
 from watchsim.simulation.trajectory import Trajectory, frames, speeds
 from watchsim.storage.columns import LongText
 from watchsim.units import known_unit
 
-# How far would the numbers move in a more exact run?
-#
 # The run is done again, a hundred times more exactly (by events) or with half the step (Moreau, where the error of the first
 # run is then twice the difference, since it goes with the step). What moves is the error of the computation. That a watch has
 # not settled yet is another error; of the two the larger is given.
@@ -80,8 +79,6 @@ def with_error_bars(numbers: Mapping[str, Any], other: Mapping[str, Any]) -> dic
     return out
 
 
-# Did the run keep what the scene promised?
-#
 # Keys are watch quantities (amplitude, rate, period, beat_error, frequency) or dotted names of the summary, such as
 # "bodies.disc.x_m" or "energy.residual_relative". Units come from the ends of these names.
 
@@ -207,8 +204,6 @@ def _advice(key: str, known: Mapping[str, Any]) -> str:
     near = difflib.get_close_matches(key, names, n=1, cutoff=ALIKE)
     return f'Did you mean "{near[0]}"?' if near else KNOWN
 
-
-# What are the headline numbers of a run?
 
 AVERAGED = ("amplitude_deg", "period_s", "rate_s_per_d", "beat_error_ms")
 LEDGER = {"in_J": 0.0, "dissipated": {}, "stored_J": 0.0, "residual_J": 0.0, "residual_relative": 0.0}

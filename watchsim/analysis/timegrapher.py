@@ -19,12 +19,10 @@ from watchsim.simulation.state import EventKind
 from watchsim.simulation.trajectory import Array, Trajectory
 from watchsim.storage.columns import blocks
 
-# What would a timegrapher show?
-#
 # It hears noises only. From the first of a beat (the pin meets the fork, A) to the last loud one (a tooth meets the locking
-# face, C) the balance is taken to swing through the lift angle, so that the amplitude is λ / (2 sin(π f Δt)). In truth C comes
-# before the end of the lift, so that an instrument reads more than the true amplitude, which stands beside it in the summary.
-# It reads nothing where the swing hardly leaves the lift: the end of the noises then is not that of a beat.
+# face, C) the balance is taken to swing through the lift angle, so that the amplitude is λ / (2 sin(π f Δt)). In truth C
+# comes before the end of the lift, so that an instrument reads more than the true amplitude, which stands beside it in the
+# summary. It reads nothing where the swing hardly leaves the lift: the end of the noises then is not that of a beat.
 
 LOUD = 1.0 / 3.0  # of the energy of the beat's loudest noise; a tooth's rebounds from the stone are fainter
 LEAST = 1.5  # lift angles that the amplitude must be: instruments begin to show it at some 80°
@@ -115,9 +113,6 @@ def _noisy(events: NDArray[Any], start: float, end: float) -> NDArray[Any]:
     """The impacts among events, from `start` to `end`."""
     times = events["t"]
     return events[(events["kind"] == EventKind.IMPACT) & (times >= start) & (times <= end)]
-
-
-# What does a timegrapher write on its paper?
 
 
 @dataclass(frozen=True)

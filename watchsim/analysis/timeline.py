@@ -16,11 +16,9 @@ from watchsim.analysis.timing import Beats, beats, between, contact_columns, nom
 from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.scene.roles import Roles, drive_direction, with_anchor
 from watchsim.scene.scene import STATISTICS
-from watchsim.simulation.state import EVENT_DRIVEN
+from watchsim.simulation import EVENT_DRIVEN
 from watchsim.simulation.trajectory import Array, Trajectory
 from watchsim.storage.columns import let_go
-
-# On which stone did the wheel rest before each beat: that of the entry or of the exit?
 
 
 class StonesUnlocked:
@@ -85,11 +83,8 @@ def _side(run: Trajectory, compiled: Compiled, parts: Roles, stone: int, time: f
     return "entry" if drive_direction(run.scene, parts.wheel) * turn < 0.0 else "exit"
 
 
-# What happens in every phase of a beat: angles, velocities, impulse on the balance, and where the energy went?
-#
 # Energies of a phase add up by themselves but for friction, which is what is left; `friction.py` works it out a second time
-# from
-# the forces at the contacts, so that the books are checked.
+# from the forces at the contacts, so that the books are checked.
 
 DROP = NAMES.index("drop")
 Triple = tuple[float, float, float]
@@ -266,8 +261,6 @@ def can_be_told(run: Trajectory) -> bool:
     return run.method == EVENT_DRIVEN and run.keep != STATISTICS
 
 
-# Which beats does a table or a plot of the timeline show, and what did their contacts take, pair by pair?
-
 BEGINNING = ("unlock", "impulse")  # the first phase of a beat
 RESTING = ("locked", "recoil")  # and the last
 
@@ -337,8 +330,6 @@ def _beat(run: Trajectory, stages: list[Stage]) -> Beat:
     ends = [one.phase.start for one in stages] + [stages[-1].phase.end]
     return Beat(tuple(stages), tuple(friction_by_pair(run, ends)))
 
-
-# How is the timeline of some beats printed: one table of motion, one of energy?
 
 NANO, KILO = 1e9, 1e-3
 WIDTH = 20

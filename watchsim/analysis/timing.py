@@ -32,8 +32,6 @@ from watchsim.simulation.state import EventKind
 from watchsim.simulation.trajectory import Array, Trajectory
 from watchsim.storage.columns import blocks, let_go, rows_where
 
-# Is the motion at a given time among the rows that were kept?
-#
 # A scene may record a few windows of a long run only; interpolating across what was left out would invent numbers.
 
 AT_ONCE = 4096  # times that are looked up together
@@ -77,8 +75,6 @@ def _between_rows(t: Array, times: Array, longest: float) -> NDArray[np.bool_]:
     return found
 
 
-# How many equal teeth has a wheel?
-#
 # An outline with Z equal teeth looks the same after 1/Z of a turn, so of the moments of its length, ∮ r² exp(i n φ) ds, only
 # those with n a multiple of Z are not zero. That holds for pointed teeth, club teeth and pins alike.
 
@@ -135,8 +131,6 @@ def _sampled(loops: list[Loop]) -> tuple[Array, Array]:
     lengths = [edge.length / count for edge, count in zip(edges, counts, strict=True)]
     return np.concatenate([np.zeros(0, complex), *points]), np.repeat(lengths, counts)
 
-
-# Which contact events concern a body, and which contacts hold at the end?
 
 Events = NDArray[Any]
 Column = NDArray[Any]
@@ -212,11 +206,8 @@ def holding_at_end(run: Trajectory) -> list[Pair]:
     return [run.pairs[contact] for contact, closed in last.items() if closed]
 
 
-# When does a listener hear the beats?
-#
 # The first noise of a beat is the impulse pin meeting the fork. Rate and beat error are taken from it by every timegrapher,
-# since
-# it comes before anything that depends on the escapement's own play.
+# since it comes before anything that depends on the escapement's own play.
 
 
 def ticks(run: Trajectory, oscillator: str, starts: Array, ends: Array, half_period: float) -> Array:
@@ -224,8 +215,6 @@ def ticks(run: Trajectory, oscillator: str, starts: Array, ends: Array, half_per
     (noises,) = contact_columns(run, involves(oscillator), ["t"], EventKind.IMPACT)
     return first_noises(noises, starts, ends, half_period)
 
-
-# How far does the oscillator swing, how fast, and how evenly?
 
 DAY = 86400.0
 HEARD = 0.8  # share of the half swings that must have a tick, for the ticks to be what the beat error is measured by
@@ -355,10 +344,9 @@ def _swinging(run: Trajectory, body: str | None) -> str:
     return found
 
 
-# What are amplitude, rate and beat error over a stretch of time, and how sure are they?
-#
-# Every error is the standard error of the mean from beat to beat (both directions of swing taken together, as they differ in a
-# steady watch too) joined with the drift from the first to the last half of the window: a watch that has not settled says so.
+# Every error is the standard error of the mean from beat to beat (both directions of swing taken together, as they differ in
+# a steady watch too) joined with the drift from the first to the last half of the window: a watch that has not settled says
+# so.
 
 Window = tuple[float, float]
 
@@ -452,8 +440,6 @@ def _unevenness(found: Beats) -> Array:
     return 500.0 * unevenness(found.mark) * np.sign(found.end_at - found.start_at)
 
 
-# What were amplitude, rate and beat error over the whole run, from its first beat to its last?
-#
 # From sums made as the run went, so that nothing of it need have been kept.
 
 Moments = Mapping[str, float]

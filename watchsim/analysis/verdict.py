@@ -41,8 +41,6 @@ from watchsim.simulation.state import EventKind
 from watchsim.simulation.trajectory import Array, Trajectory
 from watchsim.storage.columns import rows_where
 
-# Has the swing settled?
-#
 # An amplitude settles like an exponential. Of three equal stretches of time in a row, with mean amplitudes a, b, c, what is
 # still to come after the last is (c - b) r / (1 - r) with r = (c - b) / (b - a) (Aitken).
 
@@ -100,8 +98,6 @@ def _rate(watch: Watch) -> str:
     return "" if means.rate_s_per_d is None else "; amplitude and rate are those of this moment, not of the watch"
 
 
-# Does the wheel run through, with nothing to stop it?
-
 FAST = 2.0  # times as many teeth as the oscillator could let go in that time
 
 
@@ -117,9 +113,6 @@ def running_free(watch: Watch) -> tuple[float, str] | None:
         return None
     turns = (last - first) / (2.0 * np.pi)
     return start, f"{watch.wheel} runs through, {turns:.3g} turns from {when(start)} to {when(end)}"
-
-
-# Does the wheel run the wrong way?
 
 
 def backwards(watch: Watch) -> Verdict | None:
@@ -158,9 +151,6 @@ def _against_teeth(watch: Watch) -> Verdict | None:
         f"teeth; {how}. Change the sign of the torque"
     )
     return Verdict(BACKWARDS, words, t, watch.wheel, pair, drive, len(found) or None)
-
-
-# Did the lever go over while the impulse pin was away?
 
 
 def overbanking(watch: Watch) -> Verdict | None:
@@ -206,8 +196,6 @@ def _went_over(watch: Watch) -> float:
     away = np.flatnonzero(np.abs(angles - angles[-1]) > 0.5 * np.ptp(angles))
     return float(watch.run.t[away[-1]]) if len(away) and np.ptp(angles) > 0.0 else 0.0
 
-
-# Does the oscillator swing so far that it strikes the lever from outside?
 
 OUTSIDE = math.pi  # rad from rest: so far round the impulse pin cannot be in the slot
 SQUARE = (
@@ -277,8 +265,6 @@ def _angles(watch: Watch, times: Array) -> Array:
     return angles
 
 
-# Does the wheel pass more teeth than the lever lets go?
-
 AHEAD = 1  # half pitches gained within two half swings
 
 
@@ -344,8 +330,6 @@ def _mislocked(watch: Watch) -> Verdict | None:
     )
     return Verdict(TRIPS, words, t, watch.wheel, pair, drive, len(found))
 
-
-# Where does a watch that stopped stand, and what holds it?
 
 HELD = 1e-4  # rad: an oscillator that moved less for half a period is held
 
@@ -452,8 +436,6 @@ def _told_apart(first: float, second: float) -> tuple[str, str]:
             break
     return texts
 
-
-# Does the watch tick, and if not, what does it do instead?
 
 # In this order: what comes first is the cause of what comes after it.
 QUESTIONS = (backwards, overbanking, standing, tripping, knocking, unsettled)

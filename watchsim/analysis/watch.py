@@ -30,13 +30,12 @@ from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.scene.roles import drive_direction, keeps_time, oscillators, partners, roles
 from watchsim.scene.scene import STATISTICS, Scene
 from watchsim.scene.trains import goes_with
+from watchsim.simulation import EVENT_DRIVEN
 from watchsim.simulation.recording import Pair
-from watchsim.simulation.state import EVENT_DRIVEN, EventKind
+from watchsim.simulation.state import EventKind
 from watchsim.simulation.trajectory import Array, Trajectory
 from watchsim.storage.columns import blocks
 
-# Which way do the teeth of a wheel lean, and where is tooth 1?
-#
 # Teeth of escape wheels lean the way they turn: the locking face is undercut, so that only the point of a tooth touches. At
 # each radius the middle of a tooth is the phase of ∫ exp(i Z φ) dφ over its material, which its two flanks bound.
 
@@ -99,8 +98,6 @@ def _middle(outlines: list[np.ndarray], whole: float, low: float, high: float) -
     return total
 
 
-# Which contacts are in force at a given time?
-
 CHANGES = (EventKind.CLOSE, EventKind.OPEN, EventKind.HANDOVER)
 AT_ONCE = 4096  # events
 
@@ -135,9 +132,6 @@ def _after(holding: Holding, changes: NDArray[np.void]) -> Holding:
     lasting = contact[begins][at[begins] + 1 > last[contact[begins]]]
     over = set(ended.tolist())
     return {one: None for one in holding if one not in over} | dict.fromkeys(lasting.tolist())
-
-
-# With which lever arms do contacts act at one instant?
 
 
 @dataclass(frozen=True)
@@ -192,11 +186,9 @@ def arms(run: Trajectory, compiled: Compiled, t: float, contacts: list[int]) -> 
     )
 
 
-# With what torques do wheel and oscillator work on the lever, and who is the stronger?
-#
-# The parts stand still. The lever is thought to begin to turn one way; the contacts' directions say how wheel and oscillator go
-# with it and how the contacts slip, and friction resists. The equilibrium of the part on the other side of a contact gives the
-# force there, and its arms the torque at the lever.
+# The parts stand still. The lever is thought to begin to turn one way; the contacts' directions say how wheel and oscillator
+# go with it and how the contacts slip, and friction resists. The equilibrium of the part on the other side of a contact gives
+# the force there, and its arms the torque at the lever.
 
 
 def at_lever(found: Arms, row: int, other: str, lever: str, way: float) -> float | None:
@@ -217,8 +209,6 @@ def at_lever(found: Arms, row: int, other: str, lever: str, way: float) -> float
     force = -load / arm
     return None if force < 0.0 else way * force * (n_lever + rub * t_lever)
 
-
-# Which parts of a run make a watch, and where do they stand at any time?
 
 SMALLEST_ADVANCE = 0.01  # rad, for a wheel whose pitch is not known
 
@@ -329,8 +319,6 @@ def watch_of(run: Trajectory, found: Beats) -> Watch | None:
     return Watch(run, found, parts.oscillator, parts.wheel, parts.lever)
 
 
-# On which face of which pallet does which tooth rest?
-
 DRIVING = 0.05  # of the distance from the lever's pivot: with a longer arm the wheel drives the pallet out
 
 
@@ -364,11 +352,9 @@ def face(watch: Watch, found: Arms, row: int) -> Face:
     return Face(tooth, pallet, out * arm > DRIVING * math.hypot(x - lx, y - ly), out)
 
 
-# Which teeth are not locked while the oscillator is away?
-#
-# Between two beats a tooth should rest on a locking face and hold, or draw, the lever on its banking. A tooth that landed on an
-# impulse face, or a wheel that turns the wrong way, drives the lever off instead, until its dart rubs on the roller. Where a
-# lever has no banking, as in clocks with recoil, nothing can be said.
+# Between two beats a tooth should rest on a locking face and hold, or draw, the lever on its banking. A tooth that landed on
+# an impulse face, or a wheel that turns the wrong way, drives the lever off instead, until its dart rubs on the roller. Where
+# a lever has no banking, as in clocks with recoil, nothing can be said.
 
 GRAZING = 0.05  # of the distance from the staff: a dart on its roller has less of an arm, a pin in the fork more
 MANY = 8  # turning points

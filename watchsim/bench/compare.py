@@ -19,14 +19,13 @@ from watchsim.mechanism.compile import compile_scene
 from watchsim.scene.load import load
 from watchsim.scene.outlines import cached_drawing
 from watchsim.scene.scene import Recording
+from watchsim.simulation import EVENT_DRIVEN, MOREAU
 from watchsim.simulation.runner import Run, trajectory_of
 from watchsim.simulation.simulate import MoreauRun, simulate
-from watchsim.simulation.state import EVENT_DRIVEN, MOREAU, Stop
+from watchsim.simulation.state import Stop
 from watchsim.simulation.trajectory import Trajectory
 from watchsim.verification.checks import incline_state
 
-# How long does a whole run take by the clock, from the drawing to the last step, the first time and again?
-#
 # The compiled code is loaded before. The first run of a geometry reads the drawings and learns the cells that it meets (other
 # engines make their polygons); the second one finds both known.
 
@@ -74,8 +73,6 @@ def _once(scenario: Scenario, path: Path, method: str, setting: float, duration:
     return ready - begun, time.perf_counter() - ready
 
 
-# What does an engine make of a scenario, and how long does it take?
-#
 # Processor times of the stepping alone: setting up a scene, compiling and computing cells are left out for all.
 
 SAMPLE = 2e-4  # s between looks at other engines; a swing of 4 Hz has 1250
@@ -168,8 +165,6 @@ def _other(scenario: Scenario, method: str, setting: float) -> Outcome:
     return Outcome(float(np.degrees(amplitude)), DAY * (_period(scenario) / period - 1.0), note=note)
 
 
-# How is the comparison put into words?
-
 COLUMNS = ("setting", "time, s per simulated s", "spread", "error of amplitude", "of rate", "of place")
 
 
@@ -218,8 +213,6 @@ def _line(row: Mapping[str, Any]) -> str:
     cells = (engine, setting, f"{time:.3g}", spread, *errors)
     return "| " + " | ".join(cells) + " |"
 
-
-# How far off is each engine at each setting, and how long does it take for a simulated second?
 
 REPEATS = 5
 ANOTHER_WAY = 30.0  # degrees of amplitude: not a matter of accuracy any more

@@ -18,8 +18,6 @@ from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Edge, Line, Point
 from watchsim.scene.scene import Body, Scene
 
-# What must another engine be able to do to be compared?
-
 MODULES = {"pymunk": "pymunk", "box2d": "Box2D", "mujoco": "mujoco"}
 HEAVY = 1e12  # kg: a pivoted body of this mass stays on its pivot without a joint; only its inertia matters
 
@@ -70,8 +68,6 @@ def build(method: str, scene: Scene, step: float, setup: Setup) -> World:
     world: World = maker.build(scene, step, setup)
     return world
 
-
-# Of which convex pieces is an outline made?
 
 Polygon = tuple[Point, ...]
 
@@ -181,8 +177,6 @@ def _is_convex(points: list[Point]) -> bool:
     return all(_turn(points[k - 2], points[k - 1], points[k]) > 0.0 for k in range(len(points)))
 
 
-# What do other engines need to know of a scene?
-#
 # Only what they all can do: bodies that turn, are free or fixed, one set of contact parameters for each outline, constant
 # torques, linear springs and dampers. Anything else is refused rather than left out in silence.
 

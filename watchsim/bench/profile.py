@@ -26,6 +26,7 @@ from watchsim.dynamics.lcp import LcpOutcome, Level, lcp_work, lemke_checked
 from watchsim.mechanism.compile import compile_scene
 from watchsim.model import CellsRef, ModelRef
 from watchsim.scene.scene import Recording, Scene
+from watchsim.simulation import EVENT_DRIVEN
 from watchsim.simulation.closed_contacts import gather, refresh
 from watchsim.simulation.coupled_motion import engage, island_of, label_islands, motion, place_contacts, sort_by_island
 from watchsim.simulation.event_loop import EVENTS_PER_CONTACT, ROWS_PER_STEP, advance
@@ -35,21 +36,9 @@ from watchsim.simulation.modes import decide, set_rate_zeros
 from watchsim.simulation.options import OptionsRef
 from watchsim.simulation.runner import Run, trajectory_of
 from watchsim.simulation.scratch import Record, RecordRef, Until, new_record, new_until, scratch_by_reference
-from watchsim.simulation.state import (
-    COUNT_NAMES,
-    EVENT_DRIVEN,
-    State,
-    StateRef,
-    Stop,
-    arrays_of,
-    copy_of_state,
-    room_for,
-    write_state,
-)
+from watchsim.simulation.state import COUNT_NAMES, State, StateRef, Stop, arrays_of, copy_of_state, room_for, write_state
 from watchsim.simulation.trajectory import Trajectory
 
-# Which pieces of a run's work are done again and again, to time one of them?
-#
 # Each entry takes the number of repeats last. Nothing depends on these entries, so they are not among the sources that `jit`
 # takes for kernels.
 
@@ -180,8 +169,6 @@ def problems_again(A, b, n, work, x, repeats):
     return total
 
 
-# What does a run do at a random sample of its moments, and how long does that take?
-
 SAMPLE = 200  # moments of each kind
 REPEATS_SAMPLED_MOMENTS = 20  # of what follows a moment
 TRIES = 3  # of which the quickest counts
@@ -299,8 +286,6 @@ def seconds_each(call: Callable[..., object], arguments: tuple[Any, ...], repeat
     return max(best[1] - best[0], 0.0) / repeats
 
 
-# Which complementarity problems does a run solve, and what does one of each size take?
-#
 # They are posed anew at the events of a walk: those of the compression and the expansion at impacts, and of the modes
 # afterwards.
 
@@ -339,11 +324,8 @@ def size_name(unknowns: int) -> str:
     return next((f"lcp_to_{size}" for size in LARGEST if unknowns <= size), "lcp_larger")
 
 
-# What does one piece of each kind of work cost, in the middle of a run?
-#
-# Kernels are called many times in compiled code at the moments of a walk. What has no kernel of its own is what the loop takes
-# at
-# these moments beyond the pieces counted by themselves.
+# Kernels are called many times in compiled code at the moments of a walk. What has no kernel of its own is what the loop
+# takes at these moments beyond the pieces counted by themselves.
 
 REPEATS = 50
 COUNTED_AS = {  # kind of work -> its count, where that has another name
@@ -467,11 +449,9 @@ def _seconds(done: Integers, costs: Costs) -> float:
     return sum(cost * float(done[COUNT_NAMES.index(COUNTED_AS.get(work, work))]) for work, cost in costs.items())
 
 
-# Where does the time of a run go, and how far is it from the least that its kernels take?
-#
 # The floor is what would be left if nothing were done but the counted work: each count times the cost of one piece of it,
-# measured by itself in the middle of the run (kernel_costs.py). No work is counted twice. What is above the floor is the rest:
-# what goes on in between, and what the same work takes more when it is not done many times in a row.
+# measured by itself in the middle of the run (kernel_costs.py). No work is counted twice. What is above the floor is the
+# rest: what goes on in between, and what the same work takes more when it is not done many times in a row.
 
 WORDS = {
     "step": "steps of coupled bodies",

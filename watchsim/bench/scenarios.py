@@ -17,14 +17,13 @@ from watchsim.bench.engines import MODULES, Setup
 from watchsim.paths import profiles_dir
 from watchsim.scene.load import load
 from watchsim.scene.scene import Scene
+from watchsim.simulation import EVENT_DRIVEN, MOREAU
 from watchsim.simulation.recording import half_swings, since_two_before
-from watchsim.simulation.state import EVENT_DRIVEN, EVENT_DTYPE, MOREAU, EventKind
+from watchsim.simulation.state import EVENT_DTYPE, EventKind
 from watchsim.verification.checks import Incline
 
-# How far and how fast does a body swing whose place is known at evenly spaced times only?
-#
-# For engines that know no events. Turning points are those of parabolas through three samples, passages those of cubics through
-# four: with a hundred samples in a period both are off by less than 10⁻⁷ of the swing.
+# For engines that know no events. Turning points are those of parabolas through three samples, passages those of cubics
+# through four: with a hundred samples in a period both are off by less than 10⁻⁷ of the swing.
 
 Array = NDArray[np.float64]
 
@@ -74,8 +73,6 @@ def _crossings(times: Array, angle: Array) -> NDArray[np.void]:
     h = times[1] - times[0]
     return _events(EventKind.CROSS, times[i] + h * s, (c - b) / h)
 
-
-# Which scenes are compared, for how long, and with which settings of each engine?
 
 REFERENCE_TOLERANCE = 1e-13
 ENGINES = tuple(MODULES)

@@ -134,7 +134,7 @@ def _clock(seconds: float) -> str:
     return f"{minutes // 60}:{minutes % 60:02d}:{rest:02d}" if minutes >= 60 else f"{minutes}:{rest:02d} min"
 
 
-def announce_compile(kernel: str = "advance.advance", what: str = "the solver", wait: str = "half a minute") -> None:
+def announce_compile(kernel: str = "event_loop.advance", what: str = "the solver", wait: str = "half a minute") -> None:
     """Say so when the solver has to be compiled first: it is the longest wait a newcomer meets."""
     from watchsim.jit import is_cached
 

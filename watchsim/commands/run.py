@@ -26,7 +26,7 @@ from watchsim.commands.console import (
 )
 from watchsim.commands.inputs import claimed, interrupted_place, room_for, secured_folder, swept_run
 from watchsim.commands.write import Extras, goal_of, report_text, write
-from watchsim.simulation.state import EVENT_DRIVEN, METHODS
+from watchsim.simulation import EVENT_DRIVEN, METHODS
 
 if TYPE_CHECKING:
     from watchsim.render.kinematics_plot import Kinematics

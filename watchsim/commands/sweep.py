@@ -163,7 +163,7 @@ def _executor(args: argparse.Namespace, points: int | None) -> Executor:
     if points is not None:
         workers = min(workers, points)
     announce_compile()
-    if workers > 1 and args.scheduler is None and not is_cached("advance.advance"):
+    if workers > 1 and args.scheduler is None and not is_cached("event_loop.advance"):
         _compile_once()
     return chosen(workers, args.scheduler)
 

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 
 from watchsim import stopping
 from watchsim.commands.console import InputError, Progress, announce_compile, say
-from watchsim.studies.workers import FIGURES, FILES
 
 if TYPE_CHECKING:
     from watchsim.render.kinematics_plot import Kinematics
@@ -138,7 +137,7 @@ def _numbers(run: Trajectory, extras: Extras, changed: Sequence[str], folder: Pa
     if extras.profile:
         from watchsim.bench.profile import profile_of
 
-        announce_compile("repeated_work.moments_again", "what times the kernels", "a minute")
+        announce_compile("profile.moments_again", "what times the kernels", "a minute")
         numbers["profile"] = plain(profile_of(run))
     return numbers
 
@@ -200,6 +199,8 @@ def write_study(folder: Path, numbers: dict[str, Any], table: dict[str, list[Any
     except OSError as error:
         place = write_elsewhere(folder.name, lambda made: _all_in(made, files), "the table")
         raise InputError(f"{error}.\nThe table was saved, without plots, in {place}") from error
+    from watchsim.studies.workers import FIGURES, FILES
+
     drawn = [] if figure is None or stopping.requested() else [f"sweep{ending}" for ending in FIGURES]
     for name in drawn:
         write_file(folder / name, lambda path: save(figure, path), "the plot")

@@ -6,7 +6,8 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from watchsim.construction.design import Conflict, Design, contact_tables, dim, told
+from watchsim.construction import scene_builder as toml
+from watchsim.construction.design import Conflict, Design, dim
 from watchsim.construction.outline import circle, rounded
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
@@ -58,55 +59,32 @@ def leaves_at(values: Cam) -> float:
 
 TURNS = 3.0
 
-TEXT = """\
-# An eccentric cam with its follower, drawn to these dimensions:
-{dimensions}
-# Without friction the follower leaves the cam from {leaves:.6g} °/s on.
-
-[scene]
-title  = "Eccentric cam with its follower"
-schema = 1
-
-[bodies.cam]                         # turns counter-clockwise, evenly; its middle is below the axis at the start
-drawing  = "cam.dxf"
-layers   = ["CAM"]
-pivot    = ["0 mm", "0 mm"]
-motion   = "driven"
-velocity = "{values.speed!r} °/s"
-
-[bodies.follower]
-drawing  = "follower.dxf"
-layers   = ["END"]
-pivot    = ["0 mm", "0 mm"]
-position = ["0 mm", "{lowest!r} mm"]
-motion   = "slide"
-axis     = [0.0, 1.0]
-mass     = "{values.mass:.15g} g"
-
-[[springs]]                          # presses from the start: its rest lies inside the cam
-body      = "follower"
-stiffness = "{values.rate:.15g} N/mm"
-rest      = "{rest!r} mm"
-
-{contacts}
-[run]
-duration  = "{duration:.15g} s"
-tolerance = 1e-9
-"""
-
-CONTACTS = (("follower.END", "cam.CAM"),)
-
 
 def scene_text(values: Cam) -> str:
     """The text of scene.toml: the follower on the lowest point of the cam."""
-    return TEXT.format(
-        dimensions=told(values),
-        values=values,
-        contacts=contact_tables(values, *CONTACTS),
-        leaves=leaves_at(values),
-        lowest=lowest(values),
-        rest=-values.preload / values.rate,
-        duration=round(TURNS * 360.0 / values.speed, 9),
+    leaves = f"Without friction the follower leaves the cam from {leaves_at(values):.6g} °/s on."
+    below = "turns counter-clockwise, evenly; its middle is below the axis at the start"
+    return toml.scene(
+        toml.head(
+            values, "An eccentric cam with its follower, drawn to these dimensions:", "Eccentric cam with its follower", leaves
+        ),
+        toml.body("cam", "cam", "CAM", below, pivot=toml.ORIGIN, motion="driven", velocity=f"{values.speed!r} °/s"),
+        toml.body(
+            *("follower", "follower", "END"),
+            pivot=toml.ORIGIN,
+            position=("0 mm", f"{lowest(values)!r} mm"),
+            motion="slide",
+            axis=(0.0, 1.0),
+            mass=f"{values.mass:.15g} g",
+        ),
+        toml.table(
+            *("[[springs]]", "presses from the start: its rest lies inside the cam"),
+            body="follower",
+            stiffness=f"{values.rate:.15g} N/mm",
+            rest=f"{-values.preload / values.rate!r} mm",
+        ),
+        toml.contacts(values, "follower.END cam.CAM"),
+        toml.run(f"{round(TURNS * 360.0 / values.speed, 9):.15g} s"),
     )
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, fields
 from functools import cached_property, lru_cache
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.read import SNAP, read_data
@@ -55,68 +55,6 @@ def dim(default: float, unit: str, low: float, high: float, meaning: str, source
 def dimensions_of(values: type[Any]) -> tuple[Dimension, ...]:
     """The dimensions that a dataclass of values declares with `dim`, in its order."""
     return tuple(Dimension(one.name, **one.metadata[_KEY]) for one in fields(values) if _KEY in one.metadata)
-
-
-# How are the contacts of a design written into its scene?
-
-NOTED = 37  # column at which remarks begin
-
-
-class Law(Protocol):
-    """Dimensions with the two coefficients that all contacts of a design share."""
-
-    @property
-    def friction(self) -> float: ...
-
-    @property
-    def restitution(self) -> float: ...
-
-
-def contact_tables(law: Law, *pairs: tuple[str, str] | tuple[str, str, str]) -> str:
-    """One [[contacts]] table for each pair of sides, "body.LAYER"; a third text is a remark behind the heading."""
-    return "\n".join(_table(law, *pair) for pair in pairs)
-
-
-def _table(law: Law, first: str, second: str, remark: str = "") -> str:
-    heading = f"{'[[contacts]]':{NOTED}}# {remark}" if remark else "[[contacts]]"
-    return f"""\
-{heading}
-between     = ["{first}", "{second}"]
-friction    = {law.friction!r}
-restitution = {law.restitution!r}
-"""
-
-
-# How is the leaf of a design written into its scene?
-
-STEEL = 200e9  # Pa
-
-
-class Leaf(Protocol):
-    """Dimensions with those of a leaf of steel and of the arm at which it presses, mm."""
-
-    @property
-    def leaf_length(self) -> float: ...
-
-    @property
-    def leaf_width(self) -> float: ...
-
-    @property
-    def leaf_thickness(self) -> float: ...
-
-    @property
-    def leaf_arm(self) -> float: ...
-
-
-def leaf_text(values: Leaf) -> str:
-    """What stands between the braces of `leaf = { }`."""
-    sizes = (
-        ("length", values.leaf_length),
-        ("width", values.leaf_width),
-        ("thickness", values.leaf_thickness),
-        ("arm", values.leaf_arm),
-    )
-    return ", ".join([f'modulus = "{STEEL * 1e-9:g} GPa"', *(f'{name} = "{size!r} mm"' for name, size in sizes)])
 
 
 # Are the outlines of a sheet sound, once they are read back from its file?
@@ -180,16 +118,6 @@ class Impossible(ValueError):
 def no_conflicts(_values: Values) -> tuple[Conflict, ...]:
     """Of a design whose limits say it all."""
     return ()
-
-
-def told(values: Values) -> str:
-    """The dimensions as comments of a TOML file, those that differ from the default marked."""
-    lines = []
-    for one in dimensions_of(type(values)):
-        number = getattr(values, one.name)
-        usual = "" if number == one.default else f" (default {one.shortly(one.default)})"
-        lines.append(f"#   {one.name} = {one.shortly(number)}{usual}: {one.meaning}")
-    return "\n".join(lines)
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,8 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from watchsim.construction.design import Conflict, Design, Impossible, contact_tables, dim, told
+from watchsim.construction import scene_builder as toml
+from watchsim.construction.design import Conflict, Design, Impossible, dim
 from watchsim.construction.outline import along, angle_of, circle, polar, rounded, turned
 from watchsim.construction.parts import Arms, Stone, ToothForm, contour
 from watchsim.drawing.write import Sheet
@@ -257,117 +258,75 @@ def banking(points: Points) -> list[Loop]:
 
 CLEAR = 1e-4  # degrees by which tooth and passing spring stand off what they rest on at the start
 
-TEXT = """\
-# A detent escapement, as in a marine chronometer: the wheel is locked by a detent that a spring holds on its bank. As the
-# balance swings counter-clockwise its discharging stone lifts the passing spring, and with it the detent; a tooth falls on the
-# impulse stone. On the way back it bends the passing spring alone, and nothing else happens. Drawn to these dimensions:
-{dimensions}
-
-[scene]
-title  = "Detent escapement, {hertz:g} Hz, {values.teeth} teeth"
-schema = 1
-
-[bodies.wheel]                       # turns clockwise; the inertia includes the train as felt here
-drawing  = "escape_wheel.dxf"
-layers   = ["TEETH"]
-pivot    = "PIVOT"
-position = ["0 mm", "0 mm"]
-angle    = "{wheel_angle!r}°"        # a tooth just off the locking face
-inertia  = "{values.wheel_inertia:.15g} mg·cm²"
-
-[bodies.detent]
-drawing  = "detent.dxf"
-layers   = ["STONE", "BAR", "HORN", "HUB"]
-pivot    = "PIVOT"
-position = ["{pivot[0]!r} mm", "{pivot[1]!r} mm"]
-angle    = "{off_bank!r}°"           # just off its bank
-inertia  = "{values.detent_inertia:.15g} mg·cm²"
-
-[bodies.passing]                     # the passing spring: a light leaf, pressed on the detent's horn by its own spring
-on       = "detent"
-drawing  = "passing_spring.dxf"
-layers   = ["LEAF"]
-pivot    = "PIVOT"
-position = ["{root[0]!r} mm", "{root[1]!r} mm"]
-angle    = "{clear!r}°"
-mass     = "{mass:.6g} mg"
-inertia  = "{values.passing_inertia:.15g} mg·cm²"
-
-[bodies.balance]                     # hangs at the end of a swing
-drawing  = "roller.dxf"
-layers   = ["TABLE", "IMPULSE_STONE", "ROLLER", "DISCHARGE"]
-pivot    = "PIVOT"
-position = ["{balance[0]!r} mm", "{balance[1]!r} mm"]
-angle    = "{start!r}°"
-inertia  = "{values.balance_inertia:.15g} mg·cm²"
-
-[bodies.banking]
-drawing  = "banking.dxf"
-layers   = ["SCREW"]
-pivot    = "PIVOT"
-position = ["0 mm", "0 mm"]
-motion   = "fixed"
-
-[[springs]]
-body      = "balance"
-frequency = "{values.frequency:.15g} vph"
-
-[[springs]]                          # bent: holds the detent on its bank
-body      = "detent"
-stiffness = "{values.detent_stiffness:.15g} µN·m/rad"
-rest      = "{detent_rest:.9g}°"
-
-[[springs]]                          # bent: holds the leaf on the horn
-body      = "passing"
-stiffness = "{values.passing_stiffness:.15g} µN·m/rad"
-rest      = "{passing_rest:.9g}°"
-
-[[torques]]
-body  = "wheel"
-value = "{torque!r} µN·m"
-
-[[damping]]
-body     = "balance"
-q_factor = {values.q_factor!r}
-
-{contacts}
-[run]
-duration  = "10 s"
-tolerance = 1e-9
-
-[timegrapher]
-lift_angle = "{lift:.4g}°"           # from the letting go of the tooth to the end of the impulse
-"""
-
-CONTACTS: tuple[tuple[str, str] | tuple[str, str, str], ...] = (
-    ("wheel.TEETH", "detent.STONE", "locking"),
-    ("wheel.TEETH", "balance.IMPULSE_STONE", "impulse"),
-    ("passing.LEAF", "balance.DISCHARGE", "unlocking, and passing on the way back"),
-    ("passing.LEAF", "detent.HORN"),
-    ("detent.BAR", "banking.SCREW"),
-)
+WORDS = """\
+A detent escapement, as in a marine chronometer: the wheel is locked by a detent that a spring holds on its bank. As the
+balance swings counter-clockwise its discharging stone lifts the passing spring, and with it the detent; a tooth falls on the
+impulse stone. On the way back it bends the passing spring alone, and nothing else happens. Drawn to these dimensions:"""
 
 
 def scene_text(values: Detent) -> str:
     """The text of scene.toml: a tooth locked, the detent on its bank, the balance about to be let go."""
     points = Points(values)
-    return TEXT.format(
-        dimensions=told(values),
-        values=values,
-        contacts=contact_tables(values, *CONTACTS),
-        hertz=values.frequency / 7200.0,
-        wheel_angle=round(points.wheel_angle() % points.pitch + CLEAR, 9),
-        pivot=points.pivot,
-        off_bank=-CLEAR,
-        root=root(points),
-        clear=CLEAR,
-        mass=3.0 * values.passing_inertia * 1e2 / (BLADE_LENGTH * points.scale) ** 2,
-        balance=points.balance_pivot,
-        start=-values.start,
-        detent_rest=math.degrees(values.detent_torque / values.detent_stiffness),
-        passing_rest=-math.degrees(values.passing_torque / values.passing_stiffness),
-        torque=-values.torque,
-        lift=2.0 * points.half_impulse - values.inside,
+    detent_rest = math.degrees(values.detent_torque / values.detent_stiffness)
+    passing_rest = -math.degrees(values.passing_torque / values.passing_stiffness)
+    lift = 2.0 * points.half_impulse - values.inside
+    return toml.scene(
+        toml.head(values, WORDS, f"Detent escapement, {values.frequency / 7200.0:g} Hz, {values.teeth} teeth"),
+        toml.body(
+            *("wheel", "escape_wheel", "TEETH", "turns clockwise; the inertia includes the train as felt here"),
+            position=toml.ORIGIN,
+            angle=toml.Noted(
+                f"{round(points.wheel_angle() % points.pitch + CLEAR, 9)!r}°", "a tooth just off the locking face"
+            ),
+            inertia=f"{values.wheel_inertia:.15g} mg·cm²",
+        ),
+        toml.body(
+            *("detent", "detent", "STONE BAR HORN HUB"),
+            position=toml.at(*points.pivot),
+            angle=toml.Noted(f"{-CLEAR!r}°", "just off its bank", 11),
+            inertia=f"{values.detent_inertia:.15g} mg·cm²",
+        ),
+        toml.body(
+            *("passing", "passing_spring", "LEAF"),
+            "the passing spring: a light leaf, pressed on the detent's horn by its own spring",
+            on="detent",
+            position=toml.at(*root(points)),
+            angle=f"{CLEAR!r}°",
+            mass=f"{3.0 * values.passing_inertia * 1e2 / (BLADE_LENGTH * points.scale) ** 2:.6g} mg",
+            inertia=f"{values.passing_inertia:.15g} mg·cm²",
+        ),
+        toml.body(
+            *("balance", "roller", "TABLE IMPULSE_STONE ROLLER DISCHARGE", "hangs at the end of a swing"),
+            position=toml.at(*points.balance_pivot),
+            angle=f"{-values.start!r}°",
+            inertia=f"{values.balance_inertia:.15g} mg·cm²",
+        ),
+        toml.banking("SCREW"),
+        toml.hairspring(values.frequency),
+        toml.table(
+            *("[[springs]]", "bent: holds the detent on its bank"),
+            body="detent",
+            stiffness=f"{values.detent_stiffness:.15g} µN·m/rad",
+            rest=f"{detent_rest:.9g}°",
+        ),
+        toml.table(
+            *("[[springs]]", "bent: holds the leaf on the horn"),
+            body="passing",
+            stiffness=f"{values.passing_stiffness:.15g} µN·m/rad",
+            rest=f"{passing_rest:.9g}°",
+        ),
+        toml.torque("wheel", f"{-values.torque!r} µN·m"),
+        toml.q_factor("balance", values.q_factor),
+        toml.contacts(
+            values,
+            "wheel.TEETH detent.STONE: locking",
+            "wheel.TEETH balance.IMPULSE_STONE: impulse",
+            "passing.LEAF balance.DISCHARGE: unlocking, and passing on the way back",
+            "passing.LEAF detent.HORN",
+            "detent.BAR banking.SCREW",
+        ),
+        toml.run("10 s"),
+        toml.timegrapher(toml.Noted(f"{lift:.4g}°", "from the letting go of the tooth to the end of the impulse", 11)),
     )
 
 

@@ -6,7 +6,8 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from watchsim.construction.design import Conflict, Design, Impossible, contact_tables, dim, told
+from watchsim.construction import scene_builder as toml
+from watchsim.construction.design import Conflict, Design, Impossible, dim
 from watchsim.construction.outline import along, arc_between, circle, fillet_chain, polar, turned
 from watchsim.construction.parts import Arms, BalanceWheel, Stone, ToothForm, balance_wheel, contour, tooth_and_gap
 from watchsim.drawing.write import Sheet
@@ -235,76 +236,39 @@ def conflicts(values: Duplex) -> Iterator[Conflict]:
 
 # What does the scene of a duplex escapement say?
 
-CLEAR_SCENE = 1e-4  # degrees by which the tooth stands off the roller at the start
+OFF = 1e-4  # degrees by which the tooth stands off the roller at the start
 
-TEXT = """\
-# A duplex escapement: a long tooth rests on the roller while the balance swings; as the roller's notch comes by, counter-
-# clockwise, the tooth goes through with it, and an upright tooth falls on the impulse pallet. On the way back the tooth only
-# dips into the notch. Drawn to these dimensions:
-{dimensions}
-
-[scene]
-title  = "Duplex escapement, {values.frequency:.0f} vph, {values.teeth} teeth"
-schema = 1
-
-[bodies.wheel]                       # turns clockwise
-drawing  = "escape_wheel.dxf"
-layers   = ["RESTING", "IMPULSE"]
-pivot    = "PIVOT"
-position = ["0 mm", "0 mm"]
-angle    = "{wheel_angle!r}°"        # a tooth just off the roller
-inertia  = "{values.wheel_inertia:.15g} mg·cm²"      # with the train as felt here
-
-[bodies.balance]                     # hangs at the end of a swing
-drawing  = "balance.dxf"
-layers   = ["ROLLER", "PALLET"]
-draw     = ["RIM"]
-pivot    = "PIVOT"
-position = ["0 mm", "{distance!r} mm"]
-angle    = "{start!r}°"
-inertia  = "{values.balance_inertia:.15g} mg·cm²"
-
-[[springs]]
-body      = "balance"
-frequency = "{values.frequency:.15g} vph"
-draw      = {hairspring}
-
-[[torques]]
-body  = "wheel"
-value = "{torque!r} µN·m"
-
-[[damping]]
-body     = "balance"
-q_factor = {values.q_factor!r}
-
-{contacts}
-[run]
-duration  = "60 s"
-tolerance = 1e-12
-
-[timegrapher]
-lift_angle = "{lift:.4g}°"           # from the notch's taking of a tooth to the end of the impulse
-"""
-
-CONTACTS: tuple[tuple[str, str] | tuple[str, str, str], ...] = (
-    ("wheel.RESTING", "balance.ROLLER"),
-    ("wheel.IMPULSE", "balance.PALLET"),
-)
+WORDS = """\
+A duplex escapement: a long tooth rests on the roller while the balance swings; as the roller's notch comes by, counter-
+clockwise, the tooth goes through with it, and an upright tooth falls on the impulse pallet. On the way back the tooth only
+dips into the notch. Drawn to these dimensions:"""
 
 
 def scene_text(values: Duplex) -> str:
     """The text of scene.toml: a tooth at rest on the roller, the balance about to be let go."""
     points = DuplexPoints(values)
-    return TEXT.format(
-        dimensions=told(values),
-        values=values,
-        contacts=contact_tables(values, *CONTACTS),
-        wheel_angle=round((90.0 + points.rests + CLEAR_SCENE) % points.pitch, 9),
-        distance=points.distance,
-        start=-values.start,
-        hairspring=wheel_of(points).hairspring(90.0),
-        torque=-values.torque,
-        lift=points.driven + 2.0 * values.intersection,
+    lift = points.driven + 2.0 * values.intersection
+    return toml.scene(
+        toml.head(values, WORDS, f"Duplex escapement, {values.frequency:.0f} vph, {values.teeth} teeth"),
+        toml.body(
+            *("wheel", "escape_wheel", "RESTING IMPULSE", "turns clockwise"),
+            position=toml.ORIGIN,
+            angle=toml.Noted(f"{round((90.0 + points.rests + OFF) % points.pitch, 9)!r}°", "a tooth just off the roller"),
+            inertia=toml.Noted(f"{values.wheel_inertia:.15g} mg·cm²", "with the train as felt here", 6),
+        ),
+        toml.body(
+            *("balance", "balance", "ROLLER PALLET", "hangs at the end of a swing"),
+            draw="RIM",
+            position=toml.at(0, points.distance),
+            angle=f"{-values.start!r}°",
+            inertia=f"{values.balance_inertia:.15g} mg·cm²",
+        ),
+        toml.hairspring(values.frequency, wheel_of(points).hairspring(90.0)),
+        toml.torque("wheel", f"{-values.torque!r} µN·m"),
+        toml.q_factor("balance", values.q_factor),
+        toml.contacts(values, "wheel.RESTING balance.ROLLER", "wheel.IMPULSE balance.PALLET"),
+        toml.run("60 s", "1e-12"),
+        toml.timegrapher(toml.Noted(f"{lift:.4g}°", "from the notch's taking of a tooth to the end of the impulse", 11)),
     )
 
 

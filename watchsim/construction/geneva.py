@@ -6,7 +6,8 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from watchsim.construction.design import Conflict, Design, contact_tables, dim, told
+from watchsim.construction import scene_builder as toml
+from watchsim.construction.design import Conflict, Design, dim
 from watchsim.construction.outline import arc_between, circle, polar
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
@@ -136,60 +137,29 @@ def disc(values: Geneva) -> Loop:
 
 TURNS = 2.25  # of the driver, which starts square to the line of centres: the pin then stands deepest in the third slot
 
-TEXT = """\
-# A Geneva drive, drawn to these dimensions:
-{dimensions}
-
-[scene]
-title  = "Geneva drive, {values.slots} slots"
-schema = 1
-
-[bodies.driver]                      # turns counter-clockwise, evenly
-drawing  = "driver.dxf"
-layers   = ["PIN", "DISC"]
-pivot    = "PIVOT"
-position = ["{distance!r} mm", "0 mm"]
-angle    = "90°"
-motion   = "driven"
-velocity = "{values.speed!r} °/s"
-
-[bodies.wheel]                       # locked at the start; turns clockwise, {pitch:.6g}° at a time
-drawing  = "wheel.dxf"
-layers   = ["WHEEL"]
-pivot    = "PIVOT"
-position = ["0 mm", "0 mm"]
-angle    = "{half!r}°"
-inertia  = "{values.wheel_inertia:.15g} g·mm²"
-{load}
-{contacts}
-[run]
-duration  = "{duration:.15g} s"
-tolerance = 1e-9
-"""
-
-LOAD = """
-[[damping]]                          # holds the wheel back against the driving side of a slot
-body    = "wheel"
-coulomb = "{load:.15g} mN·m"
-"""
-
-CONTACTS: tuple[tuple[str, str] | tuple[str, str, str], ...] = (
-    ("driver.PIN", "wheel.WHEEL"),
-    ("driver.DISC", "wheel.WHEEL", "the lock"),
-)
-
 
 def scene_text(values: Geneva) -> str:
     """The text of scene.toml: the wheel locked, the pin outside."""
-    return TEXT.format(
-        dimensions=told(values),
-        values=values,
-        contacts=contact_tables(values, *CONTACTS),
-        distance=centre_distance(values),
-        half=half_pitch(values),
-        pitch=2.0 * half_pitch(values),
-        load=LOAD.format(load=values.load) if values.load > 0.0 else "",
-        duration=TURNS * 360.0 / values.speed,
+    holds = "holds the wheel back against the driving side of a slot"
+    return toml.scene(
+        toml.head(values, "A Geneva drive, drawn to these dimensions:", f"Geneva drive, {values.slots} slots"),
+        toml.body(
+            *("driver", "driver", "PIN DISC", "turns counter-clockwise, evenly"),
+            position=toml.at(centre_distance(values), 0),
+            angle="90°",
+            motion="driven",
+            velocity=f"{values.speed!r} °/s",
+        ),
+        toml.body(
+            *("wheel", "wheel", "WHEEL"),
+            f"locked at the start; turns clockwise, {2.0 * half_pitch(values):.6g}° at a time",
+            position=toml.ORIGIN,
+            angle=f"{half_pitch(values)!r}°",
+            inertia=f"{values.wheel_inertia:.15g} g·mm²",
+        ),
+        toml.table("[[damping]]", holds, body="wheel", coulomb=f"{values.load:.15g} mN·m") if values.load > 0.0 else None,
+        toml.contacts(values, "driver.PIN wheel.WHEEL", "driver.DISC wheel.WHEEL: the lock"),
+        toml.run(f"{TURNS * 360.0 / values.speed:.15g} s"),
     )
 
 

@@ -6,7 +6,8 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from watchsim.construction.design import Conflict, Design, contact_tables, dim, told
+from watchsim.construction import scene_builder as toml
+from watchsim.construction.design import Conflict, Design, dim
 from watchsim.construction.outline import circle, polar, rounded
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
@@ -151,76 +152,47 @@ def finger(values: Jumper) -> list[Loop]:
 
 TURNS = 2.0
 
-TEXT = """\
-# A calendar star with its jumper, drawn to these dimensions:
-{dimensions}
-
-[scene]
-title  = "Calendar star of {values.teeth} teeth with its jumper"
-schema = 1
-
-[bodies.finger]                      # turns clockwise, evenly, and carries the star on by a tooth in each turn
-drawing  = "finger.dxf"
-layers   = ["PIN"]
-pivot    = ["0 mm", "0 mm"]
-position = ["{finger[0]!r} mm", "{finger[1]!r} mm"]
-angle    = "{direction!r}°"
-motion   = "driven"
-velocity = "{speed!r} °/s"
-
-[bodies.star]                        # turns counter-clockwise, {pitch:.6g}° at a time
-drawing  = "star.dxf"
-layers   = ["STAR"]
-pivot    = ["0 mm", "0 mm"]
-position = ["0 mm", "0 mm"]
-inertia  = "{values.star_inertia:.15g} mg·cm²"
-
-[bodies.jumper]                      # holds the star between two teeth, and throws it on once the beak has passed a point
-drawing  = "jumper.dxf"
-layers   = ["BEAK"]
-pivot    = ["0 mm", "0 mm"]
-position = ["{beak!r} mm", "{values.jumper_length!r} mm"]
-inertia  = "{values.jumper_inertia:.15g} mg·cm²"
-
-[[springs]]                          # {values.preload:.6g} mN on the beak at rest, {values.rate:.6g} mN/mm more as it is lifted
-body      = "jumper"
-stiffness = "{stiffness!r} µN·m/rad"
-rest      = "{rest!r} rad"
-{drag}
-{contacts}
-[run]
-duration  = "{duration:.15g} s"
-tolerance = 1e-9
-"""
-
-DRAG = """
-[[damping]]
-body    = "star"
-coulomb = "{drag:.15g} µN·m"
-"""
-
-CONTACTS = (
-    ("finger.PIN", "star.STAR"),
-    ("jumper.BEAK", "star.STAR"),
-)
-
 
 def scene_text(values: Jumper) -> str:
     """The text of scene.toml: the star at rest, the pin on its far side."""
     direction = finger_direction(values)
-    return TEXT.format(
-        dimensions=told(values),
-        values=values,
-        contacts=contact_tables(values, *CONTACTS),
-        finger=polar(finger_distance(values), direction),
-        direction=direction,
-        speed=-values.speed,
-        pitch=pitch(values),
-        beak=beak_at_rest(values),
-        stiffness=values.rate * values.jumper_length**2,  # mN/mm · mm² = µN·m per rad
-        rest=-values.preload / (values.rate * values.jumper_length),
-        drag=DRAG.format(drag=values.drag) if values.drag > 0.0 else "",
-        duration=math.ceil(TURNS * 360.0 / values.speed * 1e6) / 1e6,
+    duration = math.ceil(TURNS * 360.0 / values.speed * 1e6) / 1e6
+    presses = f"{values.preload:.6g} mN on the beak at rest, {values.rate:.6g} mN/mm more as it is lifted"
+    return toml.scene(
+        toml.head(
+            *(values, "A calendar star with its jumper, drawn to these dimensions:"),
+            f"Calendar star of {values.teeth} teeth with its jumper",
+        ),
+        toml.body(
+            *("finger", "finger", "PIN", "turns clockwise, evenly, and carries the star on by a tooth in each turn"),
+            pivot=toml.ORIGIN,
+            position=toml.at(*polar(finger_distance(values), direction)),
+            angle=f"{direction!r}°",
+            motion="driven",
+            velocity=f"{-values.speed!r} °/s",
+        ),
+        toml.body(
+            *("star", "star", "STAR", f"turns counter-clockwise, {pitch(values):.6g}° at a time"),
+            pivot=toml.ORIGIN,
+            position=toml.ORIGIN,
+            inertia=f"{values.star_inertia:.15g} mg·cm²",
+        ),
+        toml.body(
+            *("jumper", "jumper", "BEAK"),
+            "holds the star between two teeth, and throws it on once the beak has passed a point",
+            pivot=toml.ORIGIN,
+            position=toml.at(beak_at_rest(values), values.jumper_length),
+            inertia=f"{values.jumper_inertia:.15g} mg·cm²",
+        ),
+        toml.table(
+            *("[[springs]]", presses),
+            body="jumper",
+            stiffness=f"{values.rate * values.jumper_length**2!r} µN·m/rad",  # mN/mm · mm² = µN·m per rad
+            rest=f"{-values.preload / (values.rate * values.jumper_length)!r} rad",
+        ),
+        toml.table("[[damping]]", body="star", coulomb=f"{values.drag:.15g} µN·m") if values.drag > 0.0 else None,
+        toml.contacts(values, "finger.PIN star.STAR", "jumper.BEAK star.STAR"),
+        toml.run(f"{duration:.15g} s"),
     )
 
 

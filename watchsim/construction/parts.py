@@ -1,4 +1,4 @@
-"""What does the scene of two gears in mesh say?"""
+"""Which shapes do several designs share: stones, arms, balances, gears, teeth, and the scenes of gears and pendulums?"""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from watchsim.construction.design import Values, contact_tables, told
+from watchsim.construction import scene_builder as toml
+from watchsim.construction.design import Values
 from watchsim.construction.outline import along, angle_of, arc_between, circle, fillet_chain, polar, turned
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import TURN, Edge, Line, Point
@@ -88,7 +89,7 @@ RADIUS_OF_GYRATION = 1.0 - 0.5 * SECTION
 ARM, HUB, FILLET = 0.085, 0.13, 0.035  # of the radius: width of an arm, radius of the hub, corners of the openings
 CLEAR_OF_ROLLER = 1.8  # times the reach of roller and stones, at least
 INNER, OUTER = 0.12, 0.62  # of the rim's radius: the hairspring's collet and stud
-TURNS, THICKNESS = 13.0, 0.03
+TURNS = 13
 PLACES = 3  # decimals of a millimetre that a scene needs
 
 
@@ -110,10 +111,10 @@ class BalanceWheel:
             *(Loop(tuple(spokes.window(i)), "RIM", hole=True) for i in range(self.arms)),
         ]
 
-    def hairspring(self, stud: float) -> str:
+    def hairspring(self, stud: float) -> dict[str, object]:
         """What a scene says of the hairspring, its stud in that direction (degrees)."""
-        inner, outer = (round(share * self.radius, PLACES) for share in (INNER, OUTER))
-        return f'{{ inner = "{inner:g} mm", outer = "{outer:g} mm", turns = {TURNS:g}, stud = "{stud:g}°" }}'
+        inner, outer = (f"{round(share * self.radius, PLACES):g} mm" for share in (INNER, OUTER))
+        return {"inner": inner, "outer": outer, "turns": TURNS, "stud": f"{stud:g}°"}
 
 
 def balance_wheel(inertia: float, reach: float, staff: float, arms: int) -> BalanceWheel:
@@ -225,56 +226,46 @@ def _reach(start: Point, direction: float, radius: float) -> float:
 
 # What does the scene of two gears in mesh say?
 
-TEXT = """\
-# {heading}, drawn to these dimensions:
-{dimensions}
-
-[scene]
-title  = "{title}, {values.wheel_teeth} and {values.pinion_teeth} teeth"
-schema = 1
-
-[bodies.wheel]                       # drives, counter-clockwise
-drawing  = "wheel.dxf"
-layers   = ["TEETH"]
-pivot    = "PIVOT"
-position = ["0 mm", "0 mm"]
-angle    = "0°"                      # a tooth on the line of centres
-inertia  = "{values.wheel_inertia:.15g} mg·cm²"
-
-[bodies.pinion]                      # a gap on the line of centres
-drawing  = "pinion.dxf"
-layers   = ["TEETH"]
-pivot    = "PIVOT"
-position = ["{distance!r} mm", "0 mm"]
-angle    = "{pinion!r}°"
-inertia  = "{values.pinion_inertia:.15g} mg·cm²"
-
-[[torques]]
-body  = "wheel"
-value = "{values.torque:.15g} µN·m"
-
-[[damping]]
-body    = "pinion"
-viscous = "{values.drag:.15g} µN·m·s/rad"
-
-{contacts}
-[run]
-duration  = "2 s"
-tolerance = 1e-10
-"""
-
-CONTACTS: tuple[tuple[str, str] | tuple[str, str, str], ...] = (("wheel.TEETH", "pinion.TEETH"),)
-
 
 def gear_pair_scene(values: Values, heading: str, title: str, distance: float) -> str:
     """The text of scene.toml: both at rest, in the middle of the play; `distance` of the axes, mm."""
     pinion = (180.0 + 180.0 / values.pinion_teeth) % (360.0 / values.pinion_teeth)
-    return TEXT.format(
-        heading=heading,
-        title=title,
-        dimensions=told(values),
-        values=values,
-        contacts=contact_tables(values, *CONTACTS),
-        distance=distance,
-        pinion=pinion,
+    return toml.scene(
+        toml.head(
+            *(values, f"{heading}, drawn to these dimensions:"),
+            f"{title}, {values.wheel_teeth} and {values.pinion_teeth} teeth",
+        ),
+        toml.body(
+            *("wheel", "wheel", "TEETH", "drives, counter-clockwise"),
+            position=toml.ORIGIN,
+            angle=toml.Noted("0°", "a tooth on the line of centres", 22),
+            inertia=f"{values.wheel_inertia:.15g} mg·cm²",
+        ),
+        toml.body(
+            *("pinion", "pinion", "TEETH", "a gap on the line of centres"),
+            position=toml.at(distance, 0),
+            angle=f"{pinion!r}°",
+            inertia=f"{values.pinion_inertia:.15g} mg·cm²",
+        ),
+        toml.torque("wheel", f"{values.torque:.15g} µN·m"),
+        toml.table("[[damping]]", body="pinion", viscous=f"{values.drag:.15g} µN·m·s/rad"),
+        toml.contacts(values, "wheel.TEETH pinion.TEETH"),
+        toml.run("2 s", "1e-10"),
     )
+
+
+# What does the scene of a clock say of its pendulum?
+
+
+def bob_and_rod(values: Values, bob: float, thickness: float) -> tuple[str, str]:
+    """The solids of a pendulum, its bob so thick that it has its mass: density of the bob, kg/m³; thickness of the rod, mm."""
+    thick = values.bob_mass / (bob * (math.pi * values.bob_radius**2)) * 1e9
+    mass = toml.Noted(f"{thick!r} mm", f"makes its mass {values.bob_mass:.6g} kg", 7)
+    solids = "[[bodies.pendulum.solids]]"
+    return (
+        toml.table(solids, layer="BOB", thickness=mass, density=f"{bob:g} kg/m³"),
+        toml.table(solids, layer="ROD", thickness=f"{thickness:g} mm", density=f"{ROD_DENSITY:g} kg/m³"),
+    )
+
+
+ROD_DENSITY = 7850.0  # kg/m³, steel

@@ -6,7 +6,8 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from watchsim.construction.design import Conflict, Design, contact_tables, dim, told
+from watchsim.construction import scene_builder as toml
+from watchsim.construction.design import Conflict, Design, dim
 from watchsim.construction.outline import along, angle_of, circle, polar, rounded
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
@@ -107,68 +108,46 @@ def click(values: Ratchet) -> list[Loop]:
 
 WOUND = 0.35  # rad of the click's spring at rest: it hardly weakens as the click is lifted
 
-TEXT = """\
-# A ratchet wheel with its click, drawn to these dimensions:
-{dimensions}
-
-[scene]
-title  = "Ratchet wheel of {values.teeth} teeth with its click"
-schema = 1
-
-[bodies.wheel]                       # wound counter-clockwise
-drawing  = "wheel.dxf"
-layers   = ["TEETH"]
-pivot    = ["0 mm", "0 mm"]
-inertia  = "{values.wheel_inertia:.15g} mg·cm²"
-
-[bodies.click]
-drawing  = "click.dxf"
-layers   = ["NOSE"]
-pivot    = ["0 mm", "0 mm"]
-position = ["{pivot[0]!r} mm", "{pivot[1]!r} mm"]
-angle    = "{angle!r} rad"
-inertia  = "{values.click_inertia:.15g} mg·cm²"
-
-[[springs]]                          # presses the nose into the teeth with {values.click_force:.6g} mN
-body      = "click"
-stiffness = "{stiffness!r} µN·m/rad"
-rest      = "{rest!r} rad"
-
-[[torques]]                          # the mainspring
-body  = "wheel"
-value = "{mainspring!r} mN·m"
-
-[[torques]]                          # the hand that winds, and lets go
-body  = "wheel"
-over  = "time"
-table = [["0.05 s", "0 mN·m"], ["0.07 s", "{winding} mN·m"], ["0.35 s", "{winding} mN·m"], ["0.37 s", "0 mN·m"]]
-
-[[damping]]
-body    = "wheel"
-viscous = "{values.viscous:.15g} mN·m·s/rad"
-
-{contacts}
-[run]
-duration  = "0.5 s"
-tolerance = 1e-9
-"""
-
-CONTACTS = (("click.NOSE", "wheel.TEETH"),)
-
 
 def scene_text(values: Ratchet) -> str:
     """The text of scene.toml: the click holds, the wheel is wound, the click holds again."""
-    angle = -math.radians(values.click_angle)
-    return TEXT.format(
-        dimensions=told(values),
-        values=values,
-        contacts=contact_tables(values, *CONTACTS),
-        pivot=pivot(values),
-        angle=angle,
-        stiffness=values.click_force * values.click_length / WOUND,  # mN·mm = µN·m
-        rest=angle + WOUND,
-        mainspring=-values.mainspring,
-        winding=f"{values.winding:.15g}",
+    angle, hand = -math.radians(values.click_angle), f"{values.winding:.15g} mN·m"
+    return toml.scene(
+        toml.head(
+            *(values, "A ratchet wheel with its click, drawn to these dimensions:"),
+            f"Ratchet wheel of {values.teeth} teeth with its click",
+        ),
+        toml.body(
+            "wheel",
+            "wheel",
+            "TEETH",
+            "wound counter-clockwise",
+            pivot=toml.ORIGIN,
+            inertia=f"{values.wheel_inertia:.15g} mg·cm²",
+        ),
+        toml.body(
+            *("click", "click", "NOSE"),
+            pivot=toml.ORIGIN,
+            position=toml.at(*pivot(values)),
+            angle=f"{angle!r} rad",
+            inertia=f"{values.click_inertia:.15g} mg·cm²",
+        ),
+        toml.table(
+            *("[[springs]]", f"presses the nose into the teeth with {values.click_force:.6g} mN"),
+            body="click",
+            stiffness=f"{values.click_force * values.click_length / WOUND!r} µN·m/rad",  # mN·mm = µN·m
+            rest=f"{angle + WOUND!r} rad",
+        ),
+        toml.torque("wheel", f"{-values.mainspring!r} mN·m", "the mainspring"),
+        toml.table(
+            *("[[torques]]", "the hand that winds, and lets go"),
+            body="wheel",
+            over="time",
+            table=(("0.05 s", "0 mN·m"), ("0.07 s", hand), ("0.35 s", hand), ("0.37 s", "0 mN·m")),
+        ),
+        toml.table("[[damping]]", body="wheel", viscous=f"{values.viscous:.15g} mN·m·s/rad"),
+        toml.contacts(values, "click.NOSE wheel.TEETH"),
+        toml.run("0.5 s"),
     )
 
 

@@ -6,10 +6,11 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from watchsim.construction import scene_builder as toml
 from watchsim.construction import swiss_lever as lever
-from watchsim.construction.design import Conflict, Design, Impossible, contact_tables, dim, told
+from watchsim.construction.design import Conflict, Design, Impossible, dim
 from watchsim.construction.outline import arc_between, circle, polar, rounded
-from watchsim.construction.swiss_lever import CLEAR, parts, rest, swiss, wheel_angle
+from watchsim.construction.swiss_lever import CLEAR, swiss, wheel_angle
 from watchsim.construction.swiss_lever import draw as draw_lever
 from watchsim.construction.swiss_lever_outlines import CHOSEN, ESTIMATE, SwissLever
 from watchsim.drawing.write import Sheet
@@ -173,95 +174,77 @@ def _polygon(layer: str, corners: list[Point]) -> Loop:
 
 # What does the scene of a remontoir before a Swiss lever say?
 
-HEAD = """\
-# A remontoir before a Swiss lever: the train does not drive the escape wheel but winds a weak spring on its arbor. An eccentric
-# disc on the escape wheel leads a stop lever; twice in a turn it lets a tooth of the stop wheel go, and the train winds the
-# spring by half a turn. So the escapement feels the spring alone, whatever the mainspring does. Drawn to these dimensions:
-{dimensions}
+WORDS = """\
+A remontoir before a Swiss lever: the train does not drive the escape wheel but winds a weak spring on its arbor. An eccentric
+disc on the escape wheel leads a stop lever; twice in a turn it lets a tooth of the stop wheel go, and the train winds the
+spring by half a turn. So the escapement feels the spring alone, whatever the mainspring does. Drawn to these dimensions:"""
 
-[scene]
-title  = "Remontoir before a Swiss lever"
-schema = 1
-
-"""
-
-OWN = """\
-[bodies.eccentric]                   # on the escape wheel
-on       = "wheel"
-motion   = "fixed"
-circle   = "{values.disc:.15g} mm"
-position = ["{disc[0]!r} mm", "{disc[1]!r} mm"]
-
-[bodies.winder]                      # holds the outer end of the spring; on the axis of the escape wheel
-polygon  = [["-0.06 mm", "-0.06 mm"], ["1.1 mm", "-0.06 mm"], ["1.1 mm", "0.06 mm"], ["-0.06 mm", "0.06 mm"]]
-position = ["0 mm", "0 mm"]
-inertia  = "{values.winder_inertia:.15g} mg·cm²"
-
-[bodies.stop_wheel]                  # turns counter-clockwise, by half a pitch for half a turn of the winder
-drawing  = "stop_wheel.dxf"
-layers   = ["TEETH"]
-pivot    = ["0 mm", "0 mm"]
-position = ["{stop_x!r} mm", "0 mm"]
-angle    = "{stop_wheel:.15g}°"      # a tooth a few nanometres off the upper pallet
-inertia  = "{values.stop_wheel_inertia:.15g} mg·cm²"      # with the train as felt here
-
-[bodies.stop_lever]
-drawing  = "stop_lever.dxf"
-layers   = ["PALLETS", "FORK"]
-pivot    = ["0 mm", "0 mm"]
-position = ["{lever_x!r} mm", "0 mm"]
-angle    = "{stop_lever!r}°"
-inertia  = "{values.stop_lever_inertia:.15g} mg·cm²"
-
-[[gears]]
-between = ["stop_wheel", "winder"]
-ratio   = {ratio}
-
-[[torques]]                          # the remontoir's spring, wound far: so much in the middle between two windings ...
-body    = "wheel"
-against = "winder"
-value   = "{torque:.15g} µN·m"
-
-[[springs]]                          # ... and {share:.3g} % more or less at their ends, a quarter of a turn to either side
-body      = "wheel"
-against   = "winder"
-stiffness = "{values.spring_rate:.15g} µN·m/rad"
-rest      = "{middle!r}°"
-
-[[torques]]                          # of the train
-body  = "stop_wheel"
-value = "{values.train:.15g} µN·m"
-
-{contacts}
-"""
-
-CONTACTS = (("stop_wheel.TEETH", "stop_lever.PALLETS"), ("eccentric.circle", "stop_lever.FORK"))
+WINDER = (("-0.06 mm", "-0.06 mm"), ("1.1 mm", "-0.06 mm"), ("1.1 mm", "0.06 mm"), ("-0.06 mm", "0.06 mm"))
 
 
+@dataclass(frozen=True)
 class _Plastic:
     """The law of the remontoir's own contacts: dry, without rebound."""
 
-    def __init__(self, friction: float) -> None:
-        self.friction, self.restitution = friction, 0.0
+    friction: float
+    restitution: float = 0.0
 
 
 def scene_text(values: Remontoir) -> str:
     """The text of scene.toml: the lever as by itself, a tooth of the stop wheel on the upper pallet."""
     wheel = wheel_angle(swiss(values))
-    own = OWN.format(
-        values=values,
-        disc=polar(values.eccentricity, START - wheel),
-        stop_x=-values.arm - centre_distance(values),
-        stop_wheel=half_span(values) - 2.0 * CLEAR,
-        lever_x=-values.arm,
-        stop_lever=lever_at(values, START),
-        ratio=-values.stop_teeth,
-        torque=-values.torque,
-        share=100.0 * values.spring_rate * 0.5 * math.pi / values.torque,
-        middle=wheel + middle(values),
-        contacts=contact_tables(_Plastic(values.stop_friction), *CONTACTS),
+    share = 100.0 * values.spring_rate * 0.5 * math.pi / values.torque
+    return toml.scene(
+        toml.head(values, WORDS, "Remontoir before a Swiss lever"),
+        lever.parts(values),
+        toml.table(
+            *("[bodies.eccentric]", "on the escape wheel", 8),
+            on="wheel",
+            motion="fixed",
+            circle=f"{values.disc:.15g} mm",
+            position=toml.at(*polar(values.eccentricity, START - wheel)),
+        ),
+        toml.table(
+            *("[bodies.winder]", "holds the outer end of the spring; on the axis of the escape wheel", 8),
+            polygon=WINDER,
+            position=toml.ORIGIN,
+            inertia=f"{values.winder_inertia:.15g} mg·cm²",
+        ),
+        toml.body(
+            *("stop_wheel", "stop_wheel", "TEETH"),
+            "turns counter-clockwise, by half a pitch for half a turn of the winder",
+            pivot=toml.ORIGIN,
+            position=toml.at(-values.arm - centre_distance(values), 0),
+            angle=toml.Noted(f"{half_span(values) - 2.0 * CLEAR:.15g}°", "a tooth a few nanometres off the upper pallet", 6),
+            inertia=toml.Noted(f"{values.stop_wheel_inertia:.15g} mg·cm²", "with the train as felt here", 6),
+        ),
+        toml.body(
+            *("stop_lever", "stop_lever", "PALLETS FORK"),
+            pivot=toml.ORIGIN,
+            position=toml.at(-values.arm, 0),
+            angle=f"{lever_at(values, START)!r}°",
+            inertia=f"{values.stop_lever_inertia:.15g} mg·cm²",
+        ),
+        toml.table("[[gears]]", between=("stop_wheel", "winder"), ratio=-values.stop_teeth),
+        toml.table(
+            *("[[torques]]", "the remontoir's spring, wound far: so much in the middle between two windings ..."),
+            body="wheel",
+            against="winder",
+            value=f"{-values.torque:.15g} µN·m",
+        ),
+        toml.table(
+            *("[[springs]]", f"... and {share:.3g} % more or less at their ends, a quarter of a turn to either side"),
+            body="wheel",
+            against="winder",
+            stiffness=f"{values.spring_rate:.15g} µN·m/rad",
+            rest=f"{wheel + middle(values)!r}°",
+        ),
+        toml.torque("stop_wheel", f"{values.train:.15g} µN·m", "of the train"),
+        toml.contacts(
+            _Plastic(values.stop_friction), "stop_wheel.TEETH stop_lever.PALLETS", "eccentric.circle stop_lever.FORK"
+        ),
+        lever.rest(values),
     )
-    return HEAD.format(dimensions=told(values)) + parts(values) + own + rest(values)
 
 
 # What makes a remontoir before a Swiss lever a design?

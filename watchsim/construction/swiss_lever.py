@@ -6,10 +6,12 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from types import MappingProxyType
+from typing import Any
 
 from scipy.optimize import brentq
 
-from watchsim.construction.design import Conflict, Design, Impossible, contact_tables, told
+from watchsim.construction import scene_builder as toml
+from watchsim.construction.design import Conflict, Design, Impossible
 from watchsim.construction.outline import along, angle_of, polar, turned
 from watchsim.construction.swiss_lever_outlines import (
     INERTIA,
@@ -225,117 +227,72 @@ def _horn_arc(design: Swiss) -> float:
 # What does the scene of a Swiss lever say?
 
 CLEAR = 1e-4  # degrees by which lever and wheel stand off what they rest on
-BODIES = ("wheel", "lever", "balance", "banking")
-NO_MORE: Mapping[str, str] = MappingProxyType({})
-
-HEAD = """\
-# {title}, drawn to these dimensions:
-{dimensions}
-
-[scene]
-title  = "Swiss lever, {values.frequency:.0f} vph, {values.teeth} teeth"
-schema = 1
-
-"""
-
-PARTS = """\
-[bodies.wheel]                       # turns clockwise
-drawing  = "escape_wheel.dxf"
-layers   = ["TEETH"]
-pivot    = "PIVOT"
-position = ["0 mm", "{wheel_y} mm"]
-angle    = "{wheel_angle:.7f}°"      # a tooth a few nanometres off the locking face of the entry stone
-inertia  = "{values.wheel_inertia:.15g} mg·cm²"      # with the train as felt here
-{more[wheel]}
-[bodies.lever]
-drawing  = "lever.dxf"
-layers   = ["STONES", "FORK", "DART", "ARMS"]
-pivot    = "PIVOT"
-position = ["0 mm", "{lever_y} mm"]
-angle    = "{lever_angle:.15g}°"     # a few nanometres off the bank
-inertia  = "{values.lever_inertia:.15g} mg·cm²"
-{more[lever]}
-[bodies.balance]                     # hangs at the end of a swing, the jewel far outside the fork
-drawing  = "roller.dxf"
-layers   = ["TABLE", "SAFETY", "PIN"]
-draw     = ["RIM"]
-pivot    = "PIVOT"
-position = ["0 mm", "{balance_y} mm"]
-angle    = "{start:.15g}°"
-inertia  = "{values.balance_inertia:.15g} mg·cm²"
-{more[balance]}
-[bodies.banking]
-drawing  = "banking.dxf"
-layers   = ["PINS"]
-pivot    = "PIVOT"
-position = ["0 mm", "{wheel_y} mm"]
-motion   = "fixed"
-{more[banking]}
-[[springs]]
-body      = "balance"
-frequency = "{values.frequency:.15g} vph"
-draw      = {hairspring}
-
-"""
-
-DRIVE = """\
-[[torques]]
-body  = "wheel"
-value = "{torque:.15g} µN·m"
-
-"""
-
-REST = """\
-[[damping]]
-body     = "balance"
-q_factor = {values.q_factor!r}
-
-{contacts}
-[run]
-duration  = "10 s"
-tolerance = {tolerance}
-
-[timegrapher]
-lift_angle = "{values.lift_angle:.15g}°"
-"""
-
-CONTACTS: tuple[tuple[str, str] | tuple[str, str, str], ...] = (
-    ("wheel.TEETH", "lever.STONES"),
-    ("lever.FORK", "balance.PIN"),
-    ("lever.DART", "balance.SAFETY", "safety action: never meets in normal running"),
-    ("lever.ARMS", "banking.PINS"),
-)
+NO_MORE: Mapping[str, Mapping[str, Any]] = MappingProxyType({})
 
 
 def scene_text(values: SwissLever) -> str:
     """The text of scene.toml: lever on its entry bank, a tooth on the entry stone, the balance about to be let go."""
-    head = HEAD.format(title="A Swiss lever escapement", dimensions=told(values), values=values)
-    return head + parts(values) + DRIVE.format(torque=-values.torque) + rest(values)
-
-
-def parts(values: SwissLever, below: float = 0.0, more: Mapping[str, str] = NO_MORE) -> str:
-    """Bodies and hairspring: the wheel `below` (mm) the origin, with `more` lines for each body."""
-    design = swiss(values)
-    return PARTS.format(
-        values=values,
-        more={name: more.get(name, "") for name in BODIES},
-        wheel_angle=wheel_angle(design),
-        wheel_y=_mm(-below),
-        lever_y=_mm(design.lever_pivot[1] - below),
-        lever_angle=round(design.bank - CLEAR, 10),
-        balance_y=_mm(design.balance_pivot[1] - below),
-        start=-values.start,
-        hairspring=wheel_of(design, values.balance_inertia).hairspring(90.0),
+    words = "A Swiss lever escapement, drawn to these dimensions:"
+    return toml.scene(
+        toml.head(values, words, f"Swiss lever, {values.frequency:.0f} vph, {values.teeth} teeth"),
+        parts(values),
+        toml.torque("wheel", f"{-values.torque:.15g} µN·m"),
+        rest(values),
     )
 
 
-def rest(values: SwissLever, tolerance: str = "1e-9") -> str:
-    """Damping, contacts, and how it is run."""
-    return REST.format(values=values, contacts=contact_tables(values, *CONTACTS), tolerance=tolerance)
+def parts(values: SwissLever, below: float = 0.0, more: Mapping[str, Mapping[str, Any]] = NO_MORE) -> str:
+    """Bodies and hairspring: the wheel `below` (mm) the origin, with `more` entries for each body."""
+    design = swiss(values)
+    wheel, lever, balance = (-below, design.lever_pivot[1] - below, design.balance_pivot[1] - below)
+    return toml.scene(
+        toml.body(
+            *("wheel", "escape_wheel", "TEETH", "turns clockwise"),
+            position=_above(wheel),
+            angle=toml.Noted(
+                f"{wheel_angle(design):.7f}°", "a tooth a few nanometres off the locking face of the entry stone", 6
+            ),
+            inertia=toml.Noted(f"{values.wheel_inertia:.15g} mg·cm²", "with the train as felt here", 6),
+            **more.get("wheel", {}),
+        ),
+        toml.body(
+            *("lever", "lever", "STONES FORK DART ARMS"),
+            position=_above(lever),
+            angle=toml.Noted(f"{round(design.bank - CLEAR, 10):.15g}°", "a few nanometres off the bank", 5),
+            inertia=f"{values.lever_inertia:.15g} mg·cm²",
+            **more.get("lever", {}),
+        ),
+        toml.body(
+            *("balance", "roller", "TABLE SAFETY PIN", "hangs at the end of a swing, the jewel far outside the fork"),
+            draw="RIM",
+            position=_above(balance),
+            angle=f"{-values.start:.15g}°",
+            inertia=f"{values.balance_inertia:.15g} mg·cm²",
+            **more.get("balance", {}),
+        ),
+        toml.body("banking", "banking", "PINS", position=_above(wheel), motion="fixed", **more.get("banking", {})),
+        toml.hairspring(values.frequency, wheel_of(design, values.balance_inertia).hairspring(90.0)),
+    )
 
 
-def _mm(length: float) -> str:
-    return repr(length + 0.0).removesuffix(".0")
+def rest(values: Any, pallets: str = "wheel.TEETH lever.STONES", tolerance: str = "1e-9") -> str:
+    """Damping, contacts, and how it is run; `pallets` is the contact of wheel and lever."""
+    return toml.scene(
+        toml.q_factor("balance", values.q_factor),
+        toml.contacts(
+            values,
+            pallets,
+            "lever.FORK balance.PIN",
+            "lever.DART balance.SAFETY: safety action: never meets in normal running",
+            "lever.ARMS banking.PINS",
+        ),
+        toml.run("10 s", tolerance),
+        toml.timegrapher(f"{values.lift_angle:.15g}°"),
+    )
+
+
+def _above(height: float) -> tuple[str, str]:
+    return ("0 mm", f"{repr(height + 0.0).removesuffix('.0')} mm")
 
 
 def wheel_angle(design: Swiss) -> float:

@@ -31,8 +31,6 @@ from watchsim.drawing.svg_elements import (
 from watchsim.drawing.svg_shapes import METRES, READERS, Box, Measures, PathData, fitted, placed, plane, split_length, view_box
 from watchsim.drawing.svg_style import Styles, read_styles
 
-# How long is one unit of this SVG drawing, and where does its page put it?
-#
 # Only a size of the page in a unit of length says it: width="4.3mm" viewBox="0 0 4.3 4.3" is a drawing in millimetres. Numbers
 # without a unit are none: they size a picture on a screen.
 
@@ -155,8 +153,6 @@ def _in_unit(side: _Size | None, unit: str) -> float | None:
     return side.value * ratio.numerator / ratio.denominator
 
 
-# Which program wrote this SVG file, and is its pixel that of browsers?
-#
 # A pixel is 1/96 inch since CSS 2.1. Adobe Illustrator writes points (1/72 inch) and calls them pixels; Inkscape counted 1/90
 # inch up to version 0.91 (its release notes of 0.92). Such drawings come out too small without being wrong in any place.
 
@@ -174,16 +170,15 @@ def other_pixels(root: Mapping[str, str], remarks: Sequence[str], page: Page) ->
     if page.units_from == "option" or not (in_pixels or page.units is None):
         return []
     if any("Adobe Illustrator" in remark for remark in remarks):
-        return [_warning("Adobe Illustrator", ILLUSTRATOR, 'Set units = "pt".')]
+        return [_odd_pixels("Adobe Illustrator", ILLUSTRATOR, 'Set units = "pt".')]
     version = _VERSION.match(root.get("inkscape:version", ""))
     if version is not None and (int(version[1]), int(version[2])) < CHANGED:
-        return [
-            _warning(f"Inkscape {version[0].strip()}", OLD_INKSCAPE, "Save it with a newer Inkscape, which asks about this.")
-        ]
+        fix = "Save it with a newer Inkscape, which asks about this."
+        return [_odd_pixels(f"Inkscape {version[0].strip()}", OLD_INKSCAPE, fix)]
     return []
 
 
-def _warning(program: str, pixels: int, fix: str) -> Finding:
+def _odd_pixels(program: str, pixels: int, fix: str) -> Finding:
     message = (
         f"{program} wrote this drawing, which counts {pixels} pixels to the inch instead of {BROWSERS}: it was probably drawn "
         f"{BROWSERS / pixels:.6g} times as large as it is read"
@@ -191,8 +186,6 @@ def _warning(program: str, pixels: int, fix: str) -> Finding:
     return Finding("pixels", "warning", message, fix)
 
 
-# On which layer does an SVG element lie?
-#
 # SVG has no layers. Inkscape marks groups as such; elsewhere groups and closed outlines with a name of their own serve as
 # layers, the innermost first. Names that programs make up (path1234, g10) are none. What has no name lies on layer 0, as in
 # DXF.
@@ -230,8 +223,6 @@ def inside(place: Place, tag: str, attributes: Mapping[str, str], used: bool, cl
         return Place(_ENCODED.sub(lambda match: chr(int(match[1], 16)), identity), True)
     return place
 
-
-# What of an SVG drawing was left out or looks damaged, and does it matter?
 
 FOREIGN = "element of another vocabulary"
 BURIED = "element inside of one that holds none"
@@ -319,8 +310,6 @@ def drawn_within(node: Node) -> int:
     return count
 
 
-# Which lines and arcs does this SVG file hold?
-
 DEEPEST_USE = 32  # <use> within <use>
 MOST_VISITS = 100_000  # to elements that are shown by a <use>
 
@@ -369,18 +358,9 @@ def read_svg(data: bytes, units: str | None, fit: float) -> Content:
             return Content(units=page.units, units_from=page.units_from, findings=findings)
     else:
         found.findings.append(Finding("page", "warning", "the page has no width or no height: nothing of it is shown"))
-    return Content(
-        strokes=tuple(found.strokes),
-        points=tuple(found.points),
-        units=page.units,
-        units_from=page.units_from,
-        fitted_curves=found.curves,
-        fitted_arcs=found.arcs,
-        fitted_deviation=found.deviation,
-        drawn=found.drawn(),
-        ignored=dict(walker.left_out.ignored),
-        findings=(*notes, *styles.findings, *found.findings, *walker.left_out.findings(root)),
-    )
+    found.ignored = walker.left_out.ignored
+    findings = (*notes, *styles.findings, *found.findings, *walker.left_out.findings(root))
+    return found.content(page.units, page.units_from, findings)
 
 
 class Walker:
@@ -504,7 +484,10 @@ class Walker:
             what = f'{node.name} shows "{reference[:60]}", {why}' if reference else f"{node.name} names nothing to show"
             self.report("external" if outside else "use-missing", f"{what}; it is left out", layer)
             return
-        if spot.uses >= DEEPEST_USE or lies_in(spot, target):
+        above: Spot | None = spot
+        while above is not None and above.node is not target:
+            above = above.above
+        if spot.uses >= DEEPEST_USE or above is not None:
             why = "is nested too deeply" if spot.uses >= DEEPEST_USE else f"shows {target.name}, of which it is a part"
             self.report("use-loop", f"{node.name} {why}; it is left out", layer)
             return
@@ -544,16 +527,6 @@ class Walker:
         for row in data.rows:
             self.found.runs += 1
             emit_row(self.found, [shape.mapped(spot.affine) for shape in row.shapes], layer, node.name)
-
-
-def lies_in(spot: Spot, node: Node) -> bool:
-    """Is the spot part of what this element draws?"""
-    at: Spot | None = spot
-    while at is not None:
-        if at.node is node:
-            return True
-        at = at.above
-    return False
 
 
 def conditions_hold(node: Node) -> bool:

@@ -23,10 +23,8 @@ from watchsim.scene.scene import Scene
 from watchsim.scene.trains import is_still
 from watchsim.tolerances import JOINT_RESOLUTION
 
-# Which parts of a scene are wheel, lever, balance and banking, and which contacts lie between them?
-#
-# By what touches what, never by name: the oscillator swings on its spring, the train leads from the driving torque to the last
-# wheel, the lever stands between the two, and the banking is what stands still beside the lever.
+# By what touches what, never by name: the oscillator swings on its spring, the train leads from the driving torque to the
+# last wheel, the lever stands between the two, and the banking is what stands still beside the lever.
 
 Integers = NDArray[np.int64]
 
@@ -115,8 +113,6 @@ def _joins(sides: set[str], name: str, others: set[str]) -> bool:
     return name in sides and bool((sides - {name}) & others)
 
 
-# Parts turned by hand: where do they touch, and what would the touch do?
-#
 # Absolute angles in rad. Nothing here knows forces or time.
 
 Array = NDArray[np.float64]
@@ -205,8 +201,6 @@ class Hands:
         """Of an angle at which a contact closes at this rate (m/rad), by what outlines leave open, rad."""
         return self.resolution / max(abs(rate), self.resolution)
 
-
-# How does the wheel rest while the lever is led from one side to the other?
 
 STEP = math.radians(0.25)  # of the lever, in the search for changes
 WIDTH = 1e-11  # rad of the lever: a change is known to that

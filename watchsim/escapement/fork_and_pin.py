@@ -46,9 +46,6 @@ def over_teeth(values: Sequence[float], errors: Sequence[float], teeth: Sequence
     return Quantity(mean, float(max(errors)), float(values[worst]), teeth[worst])
 
 
-# What is kept of one tooth on one stone: the places between which the angles of a beat are measured?
-
-
 @dataclass(frozen=True, slots=True)
 class Direct:
     """The wheel meets the stone at `first` and lets go at `last`, the balance at `begin` and `end`; rad.
@@ -94,8 +91,6 @@ def change_error(hands: Hands, parts: Parts, rest: Rest) -> float:
     # The corner slides at a third of the arm at least, unless draw or lift are steeper than any escapement's.
     return WIDTH + 3.0 * (hands.room + hands.resolution) / math.hypot(rest.x - x, rest.y - y)
 
-
-# How do fork and pin play together: lift angle of the balance, shake of the pin, and where would the pin knock?
 
 STEP = math.radians(0.25)  # of the lever as the pin carries it
 BACK = math.radians(1.0)  # of the balance: a pin that has one wall only stands half as far from it
@@ -336,10 +331,8 @@ def _turns(angle: float) -> float:
     return (angle - 0.5 * math.pi) % math.tau + 0.5 * math.pi
 
 
-# Do dart and horns keep the lever on its bank wherever the balance stands with the pin outside the fork?
-#
-# The freedom of the lever is how far it can be turned off its bank before something stops it. As long as that is less than the
-# total lock, the tooth stays on the locking face and draw brings the lever back.
+# The freedom of the lever is how far it can be turned off its bank before something stops it. As long as that is less than
+# the total lock, the tooth stays on the locking face and draw brings the lever back.
 
 SCAN = math.radians(1.0)  # of the balance
 FINE = 1e-9  # rad of the balance: the worst place is known to that

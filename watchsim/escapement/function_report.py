@@ -13,8 +13,6 @@ from watchsim.escapement.impulses import Impulse, Pallet
 from watchsim.escapement.measure import Function
 from watchsim.scene.scene import Scene
 
-# Does the geometry of function keep the watchmaker's rules?
-#
 # Each rule names its source; what is broken is a finding with the value, the limit and what to do.
 
 PLAYTNER = "H. R. Playtner, An Analysis of the Lever Escapement (1910)"
@@ -163,8 +161,6 @@ def _freedoms(function: Function) -> Iterator[Judgement]:
 def _least(one: Quantity) -> float:
     return math.degrees(min(one.value, one.worst))
 
-
-# How is the geometry of function reported: `statics` of `check --json`, and lines for people?
 
 STONES = ("entry", "exit")
 OF_BALANCE = ("lift_angle", "unlocking", "impulse_end", "knocking", "from_rest")

@@ -13,8 +13,6 @@ from watchsim.escapement.by_hand import JUMP, LITTLE, WIDTH, Array, Hands, Rest,
 from watchsim.escapement.fork_and_pin import Balance, Direct, Entry, Passage, Quantity, change_error, over_teeth
 from watchsim.model import ARC, FULL
 
-# How does the wheel push a stone of the balance itself, the direct impulse of a co-axial escapement?
-#
 # The balance is led on from where its pin has unlocked the wheel; pin and fork carry the lever along, the wheel follows the
 # stone. Exact as the sweep of the lever is: where the stone lets go is halved.
 
@@ -121,10 +119,8 @@ class Roller:
         return SLIDES * (self.hands.room + self.hands.resolution) / math.hypot(rest.x - x, rest.y - y)
 
 
-# Where does the wheel push, over which angles: a stone of the lever (indirect impulse) or of the balance (direct)?
-#
-# Of an escapement in which the wheel, once unlocked, runs free until it meets an impulse stone. In a Swiss lever the tooth goes
-# on from the locking face to the impulse face of the same stone, and nothing of this is reported.
+# Of an escapement in which the wheel, once unlocked, runs free until it meets an impulse stone. In a Swiss lever the tooth
+# goes on from the locking face to the impulse face of the same stone, and nothing of this is reported.
 
 DIRECT, INDIRECT = "direct", "indirect"
 
@@ -218,9 +214,6 @@ def _places(one: Passage) -> tuple[Rest, Rest]:
 def _caught(one: Passage) -> float:
     assert one.caught is not None
     return one.caught.wheel
-
-
-# What do wheel and stones do in a beat: lock, draw, recoil, lift, drop?
 
 
 @dataclass(frozen=True, slots=True)

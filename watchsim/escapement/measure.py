@@ -18,8 +18,6 @@ from watchsim.scene.roles import hinged_pallets, oscillators
 from watchsim.scene.scene import Scene
 from watchsim.scene.trains import ungeared
 
-# How does every tooth pass both stones, the lever led from bank to bank and back as often as the wheel has teeth?
-
 MOST = 0.75  # of a pitch: the wheel goes on by less in one beat; two teeth of a lever make a whole one
 
 
@@ -116,8 +114,6 @@ def _locking(stretches: Sequence[Stretch]) -> Sequence[Stretch]:
             break
     return stretches[:count]
 
-
-# What is the geometry of function of a scene: everything that can be measured by turning its parts by hand?
 
 FARTHEST = math.radians(60.0)  # an anchor or a lever is not turned further
 

@@ -24,8 +24,6 @@ from watchsim.scene.scene import Scene
 from watchsim.scene.trains import goes_with
 from watchsim.tolerances import CLEARANCE
 
-# Which bodies are led and pressed when a scene is turned by hand, and how far?
-
 SWING = math.radians(180.0)  # of a balance whose scene starts nearer to rest
 BALANCE = math.radians(60.0)  # what starts further from rest swings as far as it starts
 CLOSED = 1e-3  # of a pitch, or rad: a cycle that ends so close to where it began is closed

@@ -20,11 +20,9 @@ from watchsim.geometry.primitives import Point
 from watchsim.scene.scene import Body, Scene
 from watchsim.scene.trains import goes_with
 
-# How are bodies moved against each other so that nothing ever overlaps?
-#
 # A state of coordinates is free of overlap from the start and stays so. Bodies go as far as the exact distance allows (a body
-# whose points travel no faster than r per unit of its coordinate may move by distance / r), and what a moved body runs into is
-# pushed away, along the one coordinate it has, by the least that frees the two. Bodies geared to each other go together.
+# whose points travel no faster than r per unit of its coordinate may move by distance / r), and what a moved body runs into
+# is pushed away, along the one coordinate it has, by the least that frees the two. Bodies geared to each other go together.
 
 TOUCHING = 2e-8  # m: what comes so close is in touch
 CLOSE_UP = 1e-8  # m: how close a body is driven up to another
@@ -212,8 +210,6 @@ def assembly(scene: Scene) -> Assembly:
     trains = {i: {names[other]: far for other, far in goes_with(scene, name).items()} for name, i in names.items()}
     return Assembly(scene.bodies, couples(scene), q, fixed, trains)
 
-
-# How does a mechanism go through its cycle when it is turned by hand?
 
 FINE, FINEST = math.radians(0.1), math.radians(0.0005)  # steps of a turning body; lengths: times the reach of its outlines
 COARSE = math.radians(2.0)  # where nothing is near

@@ -191,12 +191,7 @@ def _spans(run: Trajectory, cycle: Shown) -> list[Window]:
 
 
 def _column(
-    axes: list[Axes],
-    run: Trajectory,
-    span: Window,
-    shown: tuple[Curves, list[list[Phase]]],
-    layout: Layout,
-    first: bool,
+    axes: list[Axes], run: Trajectory, span: Window, shown: tuple[Curves, list[list[Phase]]], layout: Layout, first: bool
 ) -> None:
     one, phases = shown
     wide = layout.wide

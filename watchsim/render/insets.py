@@ -80,12 +80,7 @@ def beside(frame: Frame, count: int) -> tuple[Frame, tuple[Frame, ...]]:
     columns = max(range(1, count + 1), key=lambda n: (min((across - gap) / n, (down - gap) / -(-count // n)), -n))
     width, height = (across - gap) / columns, (down - gap) / -(-count // columns)
     boxes = tuple(
-        Frame(
-            left + gap + k % columns * width,
-            top - gap - (k // columns + 1) * height + gap,
-            width - gap,
-            height - gap,
-        )
+        Frame(left + gap + k % columns * width, top - gap - (k // columns + 1) * height + gap, width - gap, height - gap)
         for k in range(count)
     )
     if wide:

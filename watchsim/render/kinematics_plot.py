@@ -91,11 +91,7 @@ class Kinematics:
     """The panels of `plot_kinematics`, which can show one window after another: most of a plot's cost is making them."""
 
     def __init__(
-        self,
-        run: Trajectory,
-        bodies: Sequence[str] | None = None,
-        quantities: Sequence[str] = USUAL,
-        width: float = FULL,
+        self, run: Trajectory, bodies: Sequence[str] | None = None, quantities: Sequence[str] = USUAL, width: float = FULL
     ) -> None:
         self.run, self._quantities = run, _quantities(quantities)
         self._channels = [channel for body in choose(run, bodies) for channel in channels(run, body)]

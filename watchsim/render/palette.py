@@ -77,11 +77,7 @@ OTHERS = (STEEL, BRASS, COPPER, BLUED, PATINA, ENAMEL, OLIVE)
 
 _STONES = ("stone", "pallet", "jewel", "ruby")
 _FORKS = ("lever", "fork", "anchor", "arm")
-_BODIES = (
-    (("balance", "roller"), BLUED),
-    (("lever", "fork", "anchor", "pallet"), STEEL),
-    (("wheel", "gear", "pinion"), BRASS),
-)
+_BODIES = ((("balance", "roller"), BLUED), (("lever", "fork", "anchor", "pallet"), STEEL), (("wheel", "gear", "pinion"), BRASS))
 _LAYERS = (
     (("roller", "balance"), BLUED),
     (("tooth", "teeth", "wheel", "rim"), BRASS),

@@ -168,11 +168,7 @@ def plot_torque(
     step = OVER + TALL + UNDER + table
     made = figure(width, TOP + rows * step)
     name = roles(run.scene).oscillator
-    heading(
-        made,
-        run.scene.title,
-        f"Torque on {name}, with its swing; triangles: impacts",
-    )
+    heading(made, run.scene.title, f"Torque on {name}, with its swing; triangles: impacts")
     largest = max((float(np.abs(one.torque).max()) for push in found for one in push), default=0.0) or 1.0
     factor, unit = next(((f, u) for f, u in PREFIXES if largest * f >= 1.0), PREFIXES[-1])
     works = [value for push in found for one in push for value in (one.forces, one.impacts, one.stage.energy.to_balance)]

@@ -23,8 +23,8 @@ from watchsim.mechanism.overlap import chord_points, corner_depth, face_depth, m
 from watchsim.model import Records, records
 from watchsim.scene.forces import Side
 from watchsim.scene.scene import WHOLE_RUN, Scene, Window
+from watchsim.simulation import MOREAU
 from watchsim.simulation.overlap_sieve import PAIR, STRETCH, STRIDE, chosen_moves, instants_within, longest_moves, sieve
-from watchsim.simulation.state import MOREAU
 from watchsim.simulation.trajectory import frames
 from watchsim.tolerances import OVERLAP_RESOLUTION, STEPPED_OVERLAP
 
@@ -371,7 +371,9 @@ class OverlapWatch:
         """The time after t (s) at which the state must be looked at, for want of rows; infinity where there are rows."""
         if self._sees_rows:
             return math.inf
-        spacing = self._scene.duration / LOOKS
+        # Twice as far apart whenever the time has doubled since the end of the scene's duration.
+        doublings = max(math.frexp(t / self._scene.duration)[1] - 1, 0)
+        spacing = math.ldexp(self._scene.duration / LOOKS, doublings)
         return (math.floor(t / spacing * (1.0 + 1e-12)) + 1.0) * spacing
 
     def see_rows(self, rows: Array) -> None:

@@ -16,12 +16,13 @@ from numpy.typing import NDArray
 from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.model import blank, row_of
 from watchsim.scene.scene import Recording, Scene, Window, as_recording
+from watchsim.simulation import EVENT_DRIVEN, METHODS, MOREAU
 from watchsim.simulation.moreau import EVENTS_PER_CONTACT, ROWS_PER_STEP, Pace, advance_fixed, moreau_work
 from watchsim.simulation.recording import Pair
 from watchsim.simulation.runner import EVENTS, ROWS, Progress, Run, load_for, trajectory_of
 from watchsim.simulation.saved_state import SavedState
 from watchsim.simulation.scratch import Until, new_record
-from watchsim.simulation.state import EVENT_DRIVEN, METHODS, MOREAU, USUAL_STEP, Stop, room_for
+from watchsim.simulation.state import USUAL_STEP, Stop, room_for
 from watchsim.simulation.trajectory import Trajectory, joined
 from watchsim.tolerances import COARSEST_TOLERANCE, FINEST_TOLERANCE
 from watchsim.units import TIME, UnitError, parse

@@ -114,8 +114,6 @@ _SENTENCES = {
 
 # Which ways of stepping through time are there?
 
-EVENT_DRIVEN, MOREAU = "pfeiffer-glocker", "moreau"
-METHODS = (EVENT_DRIVEN, MOREAU)
 USUAL_STEP = 1e-5  # s, of Moreau's time stepping
 
 

@@ -29,9 +29,8 @@ from watchsim.studies.cycle import Cycle, Orbit, Range, measures
 from watchsim.studies.return_map import Return, ReturnMap
 from watchsim.studies.section import Loop, NoSection, Section, SolverGaveUp, first_section
 
-# What does a mechanism without a cycle do instead?
-#
-# An ordinary run from where the search for a cycle ended, and the verdict on it. The only place that knows how a run is judged.
+# An ordinary run from where the search for a cycle ended, and the verdict on it. The only place that knows how a run is
+# judged.
 
 # What the search has met, where the run shows no more than that.
 WORDS = {
@@ -87,8 +86,6 @@ def late_means(run: Trajectory) -> Averages:
     return averages(found, (2.0 * run.simulated / 3.0, run.simulated))
 
 
-# Which cycles does a mechanism have, stable or not, and which of them do swings of what size lead to?
-#
 # The return map P is looked at from small swings to large ones. Where P(A) - A, or P(P(A)) - A, changes its sign there is a
 # cycle of one or two oscillations, or a jump of the map. What a swing leads to follows from the map between the samples.
 
@@ -293,8 +290,6 @@ def _nearest(amplitude: float, samples: list[Sample]) -> Sample:
     return min(around, key=lambda one: abs(one.amplitude - amplitude))
 
 
-# How is a return map looked at where the parts rest otherwise than at the section that is known?
-
 INSIDE = 0.5  # of the smaller amplitude: where on the way in the velocity is changed
 TURNS = 3  # clear turning points until one lies on the right side
 LATER = 0.1  # of a period: from one turning point on to the next
@@ -356,8 +351,6 @@ class Swings:
             pass
         return None
 
-
-# How are all cycles of a mechanism reported, and what becomes of swings that are not regular?
 
 FOLLOWED = 24  # periods: how long a swing that is not regular is watched
 

@@ -15,10 +15,8 @@ from watchsim.simulation.state import EventKind
 from watchsim.simulation.trajectory import Array
 from watchsim.studies.section import Events, Parts, turns
 
-# What are amplitude, period and beat error over a cycle that closes?
-#
-# The same definitions as for the beats of a run, over exactly one turn of the wheel: half swings from turning point to turning
-# point, noises with the silence before them. As the cycle closes, the first half swing has its predecessors too.
+# The same definitions as for the beats of a run, over exactly one turn of the wheel: half swings from turning point to
+# turning point, noises with the silence before them. As the cycle closes, the first half swing has its predecessors too.
 
 
 class Measures(NamedTuple):
@@ -58,8 +56,6 @@ def _marks(events: Events, parts: Parts, ends: Array) -> Array:
         return heard
     return passages
 
-
-# What is known about a limit cycle?
 
 JSON_NAMES = (
     *("found", "verdict", "message", "amplitude_deg", "amplitude_deg_error", "period_s", "period_s_error"),

@@ -23,8 +23,6 @@ from watchsim.studies.all_cycles import judged
 from watchsim.studies.axes import Value
 from watchsim.studies.steady import steady
 
-# Which numbers of a point can be asked for?
-
 
 @dataclass(frozen=True)
 class Output:
@@ -63,8 +61,6 @@ def outputs_named(names: Iterable[str]) -> tuple[Output, ...]:
         raise ValueError(f"outputs: name at least one of {', '.join(OUTPUTS)}")
     return tuple(found)
 
-
-# What does the watch do at one point of a study?
 
 Row = dict[str, Any]
 

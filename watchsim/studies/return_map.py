@@ -14,10 +14,8 @@ from watchsim.simulation.trajectory import Array
 from watchsim.studies.cycle import Measures, measures
 from watchsim.studies.section import Events, Loop, Parts, Section, SolverGaveUp, copied, is_touched, others_rest, turns
 
-# Where does the oscillator turn next time, when it turned at this amplitude?
-#
-# One oscillation, from a turning point to the next one on the same side, and what else must be true of it: two turning points,
-# all else at rest at the last one, and the wheel one tooth further.
+# One oscillation, from a turning point to the next one on the same side, and what else must be true of it: two turning
+# points, all else at rest at the last one, and the wheel one tooth further.
 
 EARLY, LATE = 0.03, 0.06  # of a period: how long before its end an oscillation is looked at, and for how long after
 LONGER = 1.5  # times the time of the last oscillation: how long the next one may take
@@ -142,11 +140,9 @@ def knocked(events: Events, own: Events, parts: Parts) -> bool:
     return False
 
 
-# At which amplitude does an oscillation end as it began?
-#
-# Orbits of a smooth map of one number run monotonically to the next fixed point, or out of the region where the mechanism works
-# as it should. So the search goes where the map goes, by Newton's steps with slopes between the last two points, and keeps
-# brackets.
+# Orbits of a smooth map of one number run monotonically to the next fixed point, or out of the region where the mechanism
+# works as it should. So the search goes where the map goes, by Newton's steps with slopes between the last two points, and
+# keeps brackets.
 
 EXACT = 2e-14  # of the amplitude: less than rounding
 ENOUGH = 1e-10  # of the amplitude: what must be reached
@@ -217,9 +213,8 @@ def _next(here: float, g: float, slope: float, below: float | None, above: float
     return new
 
 
-# After how many oscillations does the swing repeat itself, where it does not after one?
-#
-# An orbit is followed without taking it up anew, and its turning points are compared with those 1, 2, 3, … oscillations before.
+# An orbit is followed without taking it up anew, and its turning points are compared with those 1, 2, 3, … oscillations
+# before.
 
 FOLLOWED = 64  # oscillations
 MOST_REPEATS = 16  # oscillations after which it may repeat itself
@@ -249,8 +244,6 @@ def followed(oscillate: ReturnMap, amplitude: float) -> Array | None:
     reached: Array = oscillate.section.side * (values - oscillate.parts.level)
     return reached
 
-
-# How exactly is a cycle known, and does it close after a whole turn of the wheel?
 
 NUDGE = 1e-3  # of the amplitude: how far apart the map's slope is measured
 ALIKE = 1e-9  # of the amplitude: teeth that differ by less are alike

@@ -32,8 +32,6 @@ from watchsim.simulation.start import warm_up as warm_up_start
 from watchsim.simulation.state import NO_CONTACT, EventKind, State, Stop, arrays_of, copy_of_state, new_state, room_for
 from watchsim.tolerances import FIRST_STEP
 
-# What of a mechanism does a return map look at?
-
 
 @dataclass(frozen=True)
 class Parts:
@@ -107,8 +105,6 @@ def why_no_section(compiled: Compiled, parts: Parts) -> str:
     return ""
 
 
-# Where does a study begin when a changed dimension has pushed bodies into each other?
-
 DEEPEST = (1e-6, 1e-5)  # m: how deep an overlap may be; tried in turn, since far behind a face other faces are near
 
 
@@ -125,11 +121,8 @@ def freed_start(compiled: Compiled, options: Options) -> NDArray[np.float64] | N
     return None
 
 
-# How is the event loop driven from a given state, without keeping rows?
-#
 # What `simulate` does around the compiled loop, reduced to what a return map needs: states that can be copied, changed and
-# taken
-# up again, and the events of an oscillation.
+# taken up again, and the events of an oscillation.
 
 Events = NDArray[Any]
 
@@ -154,7 +147,7 @@ class Loop:
         self.scene, self.tolerance = scene, tolerance
         self.compiled: Compiled = like.compiled if like else compile_scene(scene)
         model = self.compiled.model
-        self.options = options_for(self.compiled.size, tolerance, natural_step(self.compiled, scene.duration))
+        self.options = options_for(self.compiled.size, tolerance, scene.duration, natural_step(self.compiled))
         self.finder: CellFinder = like.finder if like else CellFinder(model)
         self._scratch = new_scratch(model)
         self._record = new_record(model, ROWS_PER_STEP + 64, EVENTS + EVENTS_PER_CONTACT * room_for(model), NO_ROWS)
@@ -213,11 +206,8 @@ def copied(state: State) -> State:
     return copy_of_state(state)
 
 
-# Where do the parts stand that rest on the oscillator, when it turns at another amplitude?
-#
 # A dead-beat tooth stays where it is, since its locking arc has the oscillator's pivot as centre; a recoiling one gives way.
-# The
-# contacts in force stay closed: of all positions that keep their gaps, the nearest one in the metric of the mass matrix.
+# The contacts in force stay closed: of all positions that keep their gaps, the nearest one in the metric of the mass matrix.
 
 ROUNDS = 30  # of Newton's method; faces are lines and arcs
 CLOSED = 0.1  # of what the event loop takes for a closed gap; some units in the last place
@@ -252,12 +242,10 @@ def follow(loop: Loop, state: State, coordinate: int) -> bool:
     return False
 
 
-# Where does an oscillation begin and end?
-#
 # At a turning point of the oscillator, while everything else stands still: the wheel locked, the lever on its banking. There
-# one
-# number, how far it has swung, tells the whole future, because what stands still is held and comes back to the same place, the
-# wheel a tooth further. Along that number the return map is smooth: on the way it meets the same contacts in the same order.
+# one number, how far it has swung, tells the whole future, because what stands still is held and comes back to the same
+# place, the wheel a tooth further. Along that number the return map is smooth: on the way it meets the same contacts in the
+# same order.
 #
 # A wheel may also rest on the oscillator itself, as in a dead-beat or a recoil escapement. Then it stands still while the
 # oscillator turns, and where it stands follows from how far that has swung (following.py).

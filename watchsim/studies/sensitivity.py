@@ -28,8 +28,6 @@ from watchsim.studies.sweep import Progress, computed, study_of
 from watchsim.studies.workers import Executor, Journal, chosen
 from watchsim.units import ANGLE, LENGTH, NUMBER, Dimension, UnitError, known_unit, parse
 
-# Which numbers of a scene can be varied by a little, and by how little?
-
 SECTIONS = ("scene", "bodies", "springs", "torques", "damping", "contacts", DESIGN)
 # What is no dimension of the mechanism: how a drawing is read, how a body starts, vertices, what must stay a whole number.
 LEFT_OUT = {"schema", "snap", "material", "axis", "polygon", "line", "count", "turns", "velocity", "spin", "table", "pivot"}
@@ -150,8 +148,6 @@ def _change(value: float, dimension: Dimension) -> tuple[float, str]:
         return PERCENT * value, "1 %"
     return (PERCENT, "0.01") if dimension is NUMBER else (1.0, f"1 {dimension.si}")
 
-
-# What matters in this watch?
 
 AGREED = 0.01  # share of a derivative by which its two steps may differ
 NOISE = {"amplitude_deg": 1e-9, "rate_s_per_d": 1e-6, "uneven_ms": 1e-9, "period_s": 1e-13, "multiplier": 1e-7}

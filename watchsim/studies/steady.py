@@ -19,7 +19,7 @@ from watchsim.analysis.verdict_kinds import STOPS, TICKS, UNSETTLED, VERDICTS
 from watchsim.scene.errors import Faults, SceneError
 from watchsim.scene.roles import is_driven, only_presses, roles
 from watchsim.scene.scene import Scene
-from watchsim.scene.values import key_lines
+from watchsim.scene.toml import key_lines
 from watchsim.simulation.state import State
 from watchsim.studies.all_cycles import Survey, Swings, judged, late_means, run_from, with_all_cycles
 from watchsim.studies.cycle import Cycle
@@ -83,8 +83,6 @@ def _refused(scene: Scene, seen: str) -> SceneError:
     faults.add("torques" if scene.torques else "springs", f"{WHAT}: {seen}, {WHY}. {INSTEAD}")
     return SceneError(faults.found)
 
-
-# What does the watch settle to, without waiting until it has?
 
 REST = 1e-9  # rad or m per scale: bodies that stand still come back so closely, or the section is moved on
 SECTIONS = 6  # of them at most

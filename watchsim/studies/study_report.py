@@ -15,8 +15,6 @@ from watchsim.studies.sensitivity import Effect, Sensitivity
 from watchsim.studies.sweep import Sweep
 from watchsim.units import to
 
-# How is a study written as a table: CSV, and parquet where pyarrow is installed?
-
 Table = dict[str, list[Any]]  # column -> values
 
 
@@ -68,8 +66,6 @@ def sensitivity_table(found: Sensitivity) -> Table:
     rows = found.rows()
     return {name: [row[name] for row in rows] for name in (rows[0] if rows else ("key",))}
 
-
-# How is a study shown on a terminal?
 
 LONGEST = 60  # rows that are printed whole
 ENDS = 10  # of a longer table: rows at each end

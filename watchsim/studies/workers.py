@@ -1,6 +1,7 @@
-"""What does a worker process do?
+"""Who computes the points of a study, and what of it is kept if the machine is switched off now?
 
-It is given the question once, answers one point after another, and ends with the process that started it.
+An executor answers numbered points of a question in whatever order: in this process, in processes of this machine, or on a
+cluster (dask.distributed, the extra `cluster`). A journal keeps every finished row on the disk.
 """
 
 from __future__ import annotations
@@ -9,18 +10,18 @@ import contextlib
 import hashlib
 import json
 import logging
-import multiprocessing
 import os
+import pickle
+import queue
 import signal
+import subprocess
 import sys
 import threading
 import time
+import traceback
+from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
-from concurrent.futures.process import BrokenProcessPool
-from multiprocessing import connection
 from pathlib import Path
-from types import TracebackType
 from typing import IO, Any, Protocol
 
 from watchsim import stopping
@@ -30,19 +31,12 @@ from watchsim.storage.write import real, reason, write_file
 from watchsim.studies.axes import Value
 from watchsim.studies.point import Question, Row, answer
 
-# Who does the work of a study?
-#
-# One seam: something that answers numbered points of a question, in whatever order. In this process, in processes of this
-# machine
-# (concurrent.futures), or on a cluster (dask.distributed, the extra `cluster`).
-
 Points = Sequence[tuple[int, Mapping[str, Value]]]
-LOOK = 0.2  # s between looks at whether somebody wants to stop
-AHEAD = 3  # points handed out per worker before one is finished
+POLL = 0.2  # s between checks whether the study is to stop
 
 
 class WorkersLost(RuntimeError):
-    """Those who worked were ended from outside."""
+    """Workers were ended from outside, more often than can be waited for."""
 
 
 class Executor(Protocol):
@@ -50,6 +44,13 @@ class Executor(Protocol):
 
     def answers(self, question: Question, points: Points, interrupted: Callable[[], bool]) -> Iterator[tuple[int, Row]]:
         """(number, row) of every point, as they are finished."""
+
+
+def chosen(workers: int, scheduler: str | None) -> Executor:
+    """The executor for so many processes, or for the cluster with a scheduler at that address."""
+    if scheduler is not None:
+        return Cluster(scheduler)
+    return Here() if workers <= 1 else Processes(workers)
 
 
 class Here:
@@ -68,30 +69,122 @@ class Here:
             yield number, row
 
 
-def finished(future: Any) -> tuple[int, Row] | None:
-    """What a future of `worker.work` has made; None for a point that was cut short."""
-    made: tuple[int, Row] | None = future.result()
-    return made
+# Processes of this machine. Each is an interpreter of its own, started by a thread that hands it one point after the other
+# through pipes: there is no lock, server or list of shared things that could be lost with a process that is killed.
+
+LOSSES = 4  # for each worker: so many may be killed in a row without a single row
+LOST = "worker processes were ended from outside, perhaps for lack of memory"
+# With the path of this process: by itself an interpreter looks in the current folder first, where another copy may lie.
+BEGIN = "import sys; sys.path[:] = {path!r}; from watchsim.studies.workers import work; work()"
 
 
-# In this process, in several, or on a cluster?
+class Processes:
+    """So many worker processes."""
+
+    def __init__(self, workers: int) -> None:
+        self.workers = workers
+
+    def answers(self, question: Question, points: Points, interrupted: Callable[[], bool]) -> Iterator[tuple[int, Row]]:
+        waiting, made = deque(points), _Made()
+        count, left, losses = min(self.workers, len(points)), len(points), 0
+        pool = [_started(question, waiting, made) for _ in range(count)]
+        try:
+            while left and not interrupted():
+                try:
+                    one = made.get(timeout=POLL)
+                except queue.Empty:
+                    continue
+                if isinstance(one, BaseException):
+                    raise one
+                if one is None:
+                    losses += 1
+                    if losses == LOSSES * count:
+                        raise WorkersLost(LOST)
+                    pool.append(_started(question, waiting, made))
+                else:
+                    losses, left = 0, left - 1
+                    yield one
+        finally:
+            for process, thread in pool:
+                process.kill()
+                thread.join()
+                process.wait()
 
 
-def chosen(workers: int, scheduler: str | None) -> Executor:
-    """The executor for so many processes, or for the cluster with a scheduler at that address."""
-    if scheduler is not None:
-        return Cluster(scheduler)
-    if workers <= 1:
-        return Here()
-
-    return Processes(workers)
+_Made = queue.SimpleQueue["tuple[int, Row] | BaseException | None"]  # rows, what went wrong, None: a process was killed
 
 
-# How do the machines of a cluster share the points of a study?
-#
-# Through dask.distributed, the extra `cluster`: a scheduler that somebody has started, and workers on which this package is
-# installed. Workers may come and go: a point whose worker has gone is computed again by another one.
+def _started(
+    question: Question, waiting: deque[tuple[int, Mapping[str, Value]]], made: _Made
+) -> tuple[subprocess.Popen[bytes], threading.Thread]:
+    """A worker process and the thread that serves it. Ctrl-C is for the process that started it, hence the own session."""
+    path = [os.path.abspath(place) for place in sys.path]  # noqa: PTH100 - "" is the current folder
+    pipe = subprocess.PIPE
+    process = subprocess.Popen([sys.executable, "-c", BEGIN.format(path=path)], stdin=pipe, stdout=pipe, start_new_session=True)
+    thread = threading.Thread(target=_serve, args=(process, question, waiting, made), daemon=True)
+    thread.start()
+    return process, thread
 
+
+def _serve(
+    process: subprocess.Popen[bytes], question: Question, waiting: deque[tuple[int, Mapping[str, Value]]], made: _Made
+) -> None:
+    """Have points computed until none waits; the one that a killed process had waits again."""
+    assert process.stdin and process.stdout
+    point = None
+    try:
+        pickle.dump(question, process.stdin)
+        while waiting:
+            point = waiting.popleft()
+            pickle.dump(point, process.stdin)
+            process.stdin.flush()
+            made.put(pickle.load(process.stdout))
+    except IndexError:  # another thread took the last one
+        pass
+    except (OSError, EOFError, pickle.UnpicklingError):
+        if point is not None:
+            waiting.append(point)
+        made.put(None)
+    with contextlib.suppress(OSError):
+        process.stdin.close()
+    process.stdout.close()
+
+
+def work() -> None:
+    """What a worker process does: points in, rows out, until the process that started it has gone."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    out = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)  # what is printed does not belong among the rows
+    given: queue.SimpleQueue[Any] = queue.SimpleQueue()
+    threading.Thread(target=_receive, args=(given,), daemon=True).start()
+    question = given.get()
+    while True:
+        number, changes = given.get()
+        made: tuple[int, Row] | BaseException
+        try:
+            made = number, answer(question, changes)
+        except Exception as error:
+            made = RuntimeError(f"{error!r} in a worker process\n{traceback.format_exc()}")
+        try:
+            pickle.dump(made, out)
+            out.flush()
+        except OSError:
+            os._exit(1)
+
+
+def _receive(given: queue.SimpleQueue[Any]) -> None:
+    """The end of the pipe, also in the middle of a point, is the end of this process."""
+    try:
+        while True:
+            given.put(pickle.load(sys.stdin.buffer))
+    finally:
+        os._exit(1)
+
+
+# A cluster has a scheduler that somebody has started, and workers on which this package is installed. Workers may come and go:
+# a point whose worker has gone is computed again by another one.
+
+AHEAD = 3  # points handed out per worker before one is finished
 TIMEOUT = 10.0  # s to reach the scheduler
 PATIENCE = 60.0  # s without any worker
 GATHERED = 2.0  # s that a finished row may take to arrive, before it is asked for again
@@ -140,7 +233,7 @@ class Cluster:
                     del under_way[future]
                     yield made
                 if not done:
-                    time.sleep(LOOK)
+                    time.sleep(POLL)
             self._client.cancel(list(under_way))
         except self._distributed.KilledWorker as error:
             raise WorkersLost(f"workers of the cluster were ended from outside: {error}") from error
@@ -164,7 +257,7 @@ class Cluster:
                         return threads
             if time.monotonic() - since > PATIENCE:
                 raise WorkersLost(f"the cluster at {self._address} has had no worker for {PATIENCE:g} s")
-            time.sleep(LOOK)
+            time.sleep(POLL)
         return 0
 
     def _lost(self) -> WorkersLost:
@@ -176,13 +269,9 @@ def _work(number: int, question: Question, changes: dict[str, float | str]) -> t
     return number, answer(question, changes)
 
 
-# What of a study is kept if the machine is switched off now?
-#
 # A folder's `rows.jsonl`: first what the study is, then every finished row on a line of its own, on the disk before the next
-# one.
-# Whoever goes on reads it; a last line that was cut off is left out. A row that cannot be written, as on a full disk, is
-# written
-# with the next one, and the study goes on.
+# one. Whoever goes on reads it; a last line that was cut off is left out. A row that cannot be written, as on a full disk, is
+# written with the next one, and the study goes on.
 
 NAME = "rows.jsonl"
 FIGURES = (".png", ".svg", ".pdf")
@@ -296,160 +385,3 @@ def _difference(before: Any, now: Any) -> str:
 
 def _values(before: list[Any], now: list[Any]) -> str:
     return f"were {len(before)} values from {before[0]} to {before[-1]}, now {len(now)} from {now[0]} to {now[-1]}"
-
-
-# What does a worker process do?
-
-SERVER = "WATCHSIM_SERVER_OF_WORKERS"  # set for the process that workers are forked from
-PR_SET_PDEATHSIG = 1  # Linux, include/uapi/linux/prctl.h
-
-
-class _Work:
-    """What this process was given."""
-
-    question: Question
-    stop = threading.Event()  # the wish to stop
-
-
-def begin(question: Question, wish: Any) -> None:
-    """Called once in every worker process; `wish` ends when it is to stop. Ctrl-C is heard by the process that started it."""
-    _Work.question = question
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    parent = multiprocessing.parent_process()
-    if parent is not None:
-        sys.stderr = _WhileHeard(sys.stderr, parent.sentinel)
-        threading.Thread(target=_end_with, args=(parent.sentinel, wish), daemon=True).start()
-    if sys.platform == "linux":  # also if the server it was forked from is killed
-        import ctypes
-
-        with contextlib.suppress(OSError, AttributeError):
-            ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, int(signal.SIGKILL))
-        if os.getppid() == 1:
-            os._exit(1)
-
-
-def _end_with(sentinel: Any, wish: Any) -> None:
-    """A worker whose starter was killed must not wait for work for ever."""
-    if sentinel not in connection.wait([sentinel, wish]):
-        _Work.stop.set()
-        connection.wait([sentinel])
-    os._exit(1)
-
-
-class _WhileHeard:
-    """stderr as long as whoever started this process lives: what fails because it has gone is of no use to anybody."""
-
-    def __init__(self, stream: Any, sentinel: Any) -> None:
-        self._stream, self._sentinel = stream, sentinel
-
-    def write(self, words: str) -> int:
-        return len(words) if connection.wait([self._sentinel], 0) else int(self._stream.write(words))
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self._stream, name)
-
-
-def _quiet_when_left(kind: type[BaseException], error: BaseException, place: TracebackType | None) -> None:
-    """A worker that is being started while its starter is killed ends without a word."""
-    if not issubclass(kind, (EOFError, ConnectionError)):
-        sys.__excepthook__(kind, error, place)
-
-
-if os.environ.pop(SERVER, None):
-    sys.excepthook = _quiet_when_left
-
-
-def work(number: int, changes: Mapping[str, Value]) -> tuple[int, Row] | None:
-    """The answer to one point; None where it was cut short."""
-    try:
-        return number, answer(_Work.question, changes, _Work.stop.is_set)
-    except KeyboardInterrupt:
-        return None
-
-
-# How do processes of this machine share the points of a study?
-#
-# They are forked from a server that has done nothing but import the package (where the system has one), never from a process
-# with
-# threads; elsewhere they are started anew.
-
-ATTEMPTS = 4  # sets of workers in a row that may be lost without a single row
-LOST = "worker processes were ended from outside, perhaps for lack of memory"
-
-
-class Processes:
-    """So many worker processes. Start it under `if __name__ == "__main__":` in scripts, as everything that starts processes."""
-
-    def __init__(self, workers: int) -> None:
-        self.workers = workers
-
-    def answers(self, question: Question, points: Points, interrupted: Callable[[], bool]) -> Iterator[tuple[int, Row]]:
-        left, attempts = dict(points), ATTEMPTS
-        while left and not interrupted():
-            try:
-                for number, row in self._by_one_set(question, list(left.items()), interrupted):
-                    del left[number]
-                    attempts = ATTEMPTS
-                    yield number, row
-                return
-            except (BrokenProcessPool, ConnectionError, EOFError) as error:  # the last two: the server they are forked from
-                attempts -= 1
-                if not attempts:
-                    raise WorkersLost(LOST) from error
-                time.sleep(LOOK * (ATTEMPTS - attempts))  # a server that was killed is told from a living one a moment later
-
-    def _by_one_set(self, question: Question, points: Points, interrupted: Callable[[], bool]) -> Iterator[tuple[int, Row]]:
-        """The answers of one set of workers; BrokenProcessPool once one of them has been killed."""
-        context = start_method()
-        # The workers hear the end of a pipe. An event has a lock, which a worker that is killed may take with it.
-        hearing, wish = context.Pipe(duplex=False)
-        waiting = list(reversed(points))
-        count = min(self.workers, len(points))
-        pool = ProcessPoolExecutor(count, context, initializer=begin, initargs=(question, hearing))
-        under_way: set[Future[Any]] = set()
-        try:
-            while (waiting or under_way) and not interrupted():
-                while waiting and len(under_way) < AHEAD * count:
-                    under_way.add(pool.submit(work, *waiting.pop()))
-                done, under_way = wait(under_way, LOOK, FIRST_COMPLETED)
-                for future in sorted(done, key=lambda future: future.exception() is not None):  # what is finished is kept
-                    made = finished(future)
-                    if made is not None:
-                        yield made
-        finally:
-            wish.close()
-            pool.shutdown(wait=True, cancel_futures=True)
-            hearing.close()
-
-
-def start_method() -> Any:
-    """A server to fork from, with the package imported, else new processes."""
-    if "forkserver" not in multiprocessing.get_all_start_methods():
-        return multiprocessing.get_context("spawn")
-    context = multiprocessing.get_context("forkserver")
-    if sys.version_info >= (3, 11):  # before, each worker imports the package for itself
-        context.set_forkserver_preload(["watchsim.studies.workers"])
-        _start_server()
-    return context
-
-
-def _start_server() -> None:
-    """With the path of this process: by itself it looks in the current folder first, where another copy may lie."""
-    from multiprocessing import forkserver
-
-    path = {
-        "PYTHONSAFEPATH": "1",
-        "PYTHONPATH": os.pathsep.join(place or os.curdir for place in sys.path),
-        "PYTHONWARNINGS": "ignore:resource_tracker:UserWarning",  # after a kill it counts what it clears up
-        SERVER: "1",
-    }
-    before = {name: os.environ.get(name) for name in path}
-    os.environ.update(path)
-    try:
-        forkserver.ensure_running()
-    finally:
-        for name, value in before.items():
-            if value is None:
-                del os.environ[name]
-            else:
-                os.environ[name] = value

@@ -10,8 +10,6 @@ from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import TURN, Arc, Line, Point
 from watchsim.scene.scene import Body
 
-# How is a number compared with what it should be?
-
 Row = dict[str, Any]
 
 
@@ -259,9 +257,6 @@ def _swings(case: Stopped, count: int) -> list[tuple[float, float]]:
         swings.append((t, k))
         t += 2.0 * float(ellipk(k * k)) / case.w
     return swings
-
-
-# What do the bodies of the benchmarks look like?
 
 
 def circle(radius: float) -> Loop:

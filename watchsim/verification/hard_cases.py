@@ -18,8 +18,6 @@ from watchsim.simulation.trajectory import Trajectory
 from watchsim.verification.benchmarks import Benchmark, Check, Measure, counted
 from watchsim.verification.checks import box, circle, ground, polygon, shaped
 
-# What happens at the very edge of contact: a graze by a nanometre, a corner met within a nanometre, a start in touch?
-
 GRAVITY = 9.81
 EXTENT = 4e-11  # m: `Options.extent` of outlines as large as the tooth
 NANOMETRES = (1.0, 0.1, 0.01, 0.001, -0.001, -0.01, -0.1, -1.0)
@@ -118,8 +116,6 @@ def standing(count: int) -> Benchmark:
     )
     return Benchmark(f"start at rest on {count} contacts", scene, checks, "statics")
 
-
-# Which hard cases of contact have exact solutions, and what are they?
 
 EXACT = 1e-10
 NEAR = 1e-3  # how far from a limit the two cases beside it lie, as a share or in radians

@@ -119,8 +119,6 @@ class BareContacts:
         return self.work.system.force[: 2 * len(self.taken)].copy()
 
 
-# Do random impacts and complementarity problems come out, each against an answer found another way?
-
 Problem = tuple[Array, Array]
 FEW, MANY = 2000, 100_000  # problems of each kind: at every `verify`, and with --slow
 LARGEST = 5  # unknowns of a complementarity problem: all its bases are tried where no solution is found

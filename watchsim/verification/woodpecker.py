@@ -16,13 +16,10 @@ from watchsim.simulation.moreau_percussions import laws, relax
 from watchsim.verification.checks import Row, compared
 from watchsim.verification.random_problems import BareContacts
 
-# What is the woodpecker toy?
-#
 # A sleeve with play on a pole, and a bird that a torsion spring holds to it: pecking, sticking and slipping it comes down.
-# Three
-# coordinates, the height of the sleeve and the tilts of sleeve and bird; three frictional contacts with the pole: the beak, the
-# sleeve's lower and its upper edge. Linearised for small tilts. Data: Ch. Glocker, Dynamik von Starrkörpersystemen mit Reibung
-# und Stößen, thesis, Munich 1995, and Ch. Glocker, C. Studer, Multibody System Dynamics 13 (2005) 447.
+# Three coordinates, the height of the sleeve and the tilts of sleeve and bird; three frictional contacts with the pole: the
+# beak, the sleeve's lower and its upper edge. Linearised for small tilts. Data: Ch. Glocker, Dynamik von Starrkörpersystemen
+# mit Reibung und Stößen, thesis, Munich 1995, and Ch. Glocker, C. Studer, Multibody System Dynamics 13 (2005) 447.
 
 Array = NDArray[np.float64]
 
@@ -127,8 +124,6 @@ def start(toy: Toy, model: Modal) -> tuple[Array, Array]:
     return model.into(np.array([0.0, tilt, -0.2788])), model.into(np.array([-0.3411, 0.0, -7.4583]))
 
 
-# How does the woodpecker toy move, exactly?
-#
 # With constant directions the contact forces of a mode are linear in the coordinates: the motion within a mode is that of a
 # linear system with constant coefficients, and its exponential is exact. Forces, modes and impacts come from the kernels of
 # `dynamics`; only the time of the next event is found here.
@@ -381,8 +376,6 @@ def _impact(rows: Array, v: Array, mu: Array, restitution: Array) -> Array:
     return middle + rows.T @ more
 
 
-# Which motion of the woodpecker toy repeats itself?
-#
 # While the lower edge sticks only the bird moves, and the edge breaks loose at one tilt of the bird: what the toy does next
 # depends on one number, the bird's rate there. A cycle is a fixed point of the map from that number to the one a peck later.
 
@@ -441,12 +434,11 @@ def find_cycle(toy: Toy) -> Cycle:
     return Cycle(events, last.t, -float(last.q[0]), float(max(tilts, rates)), slope)
 
 
-# Does the woodpecker toy move as others have published it?
-#
 # Two runs of the same toy from the same start, by Moreau's time stepping: the reference of Siconos, whose state at the end is
 # known; and the animation of M. Baumann, G. Nützi, Simulating the Woodpecker Toy, 2017 (github.com/gabyx/Woodpecker,
-# WoodpeckerAnimation2.svg), which shows positions and contact forces in 644 frames of 0.43 s and thereby every change of mode:
-# where a force begins or ends, where it leaves the cone of friction's edge and the sleeve stops, or begins to slide again.
+# WoodpeckerAnimation2.svg), which shows positions and contact forces in 644 frames of 0.43 s and thereby every change of
+# mode: where a force begins or ends, where it leaves the cone of friction's edge and the sleeve stops, or begins to slide
+# again.
 
 NAME = "woodpecker toy"
 # One peck, with the last frame before each event. The sleeve slides on its lower edge and sticks; breaks loose, slides and lets
@@ -496,8 +488,6 @@ def published_rows(toy: Toy, cycle: Cycle) -> list[Row]:
         ),
     ]
 
-
-# Does the woodpecker toy come out?
 
 STEPS, SLOW_STEPS = (5e-5, 5e-6), (5e-5, 5e-6, 5e-7)
 
