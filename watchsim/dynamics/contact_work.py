@@ -1,4 +1,4 @@
-"""Where do the contact problems of one island work? Room allocated once, by owner; no kernel takes all of it."""
+"""Where do the contact problems of one island work? Room allocated once, by owner; no kernel here takes all of it."""
 
 from __future__ import annotations
 
