@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from watchsim.contact.gaps import Closed, closed_contacts
-from watchsim.dynamics.delassus import ContactWork, contact_work
+from watchsim.dynamics.contact_work import ContactWork, contact_work
 from watchsim.model import CONTACT, COORDINATE, LAW, Records, records
 
 SPARE = 2  # rows of contacts that nobody may read
@@ -26,7 +26,8 @@ class Sparse:
         self.m, self.n = m, n
         self.closed: Closed = closed_contacts(m + SPARE)
         self.work: ContactWork = contact_work(m + SPARE, n)
-        for values in (self.closed.w_N, self.closed.w_T, self.closed.kin.bar_N, self.closed.kin.bar_T, *self.work):
+        parts = [array for part in self.work for array in part]
+        for values in (self.closed.w_N, self.closed.w_T, self.closed.kin.bar_N, self.closed.kin.bar_T, *parts):
             if isinstance(values, np.ndarray) and values.dtype == float:
                 values[:] = np.nan
         self.closed.slots[m:] = 1
@@ -44,8 +45,8 @@ class Sparse:
         self.model = SimpleNamespace(coordinates=coordinates, contacts=contacts, laws=laws)
         self.friction = np.array([laws[contacts[k].group].friction for k in numbers])
         self.bars = np.ravel([self.closed.kin.bar_N[:m], self.closed.kin.bar_T[:m]], order="F")
-        self.work.inverse[:] = 1.0 / coordinates.mass
-        self.work.h[:] = rng.normal(size=n)
+        self.work.system.inverse[:] = 1.0 / coordinates.mass
+        self.work.system.h[:] = rng.normal(size=n)
 
     def moves(self, i: int, coords: np.ndarray, rng: np.random.Generator) -> None:
         """Contact i acts on these coordinates, in this order."""
@@ -63,4 +64,4 @@ class Sparse:
     @property
     def G(self) -> np.ndarray:
         """The rates that impulses make."""
-        return self.W * self.work.inverse @ self.W.T
+        return self.W * self.work.system.inverse @ self.W.T

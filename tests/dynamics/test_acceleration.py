@@ -13,7 +13,7 @@ from sparse_contacts import Sparse
 from watchsim.contact.gaps import BACKWARD, FORWARD, OPEN, STICK, closed_contacts, contact_kinematics, place, poses
 from watchsim.dynamics import acceleration, delassus
 from watchsim.dynamics import forces as bearing_friction
-from watchsim.dynamics.delassus import contact_work
+from watchsim.dynamics.contact_work import contact_work
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Line
 from watchsim.jit import callable_kernel
@@ -43,11 +43,11 @@ class Outcome:
         _place(model, np.array(q, float), np.array(u, float), pose)
         for row, k in enumerate(ids):
             _kinematics(model, k, pose, row, closed)
-        work.h[:] = h
+        work.system.h[:] = h
         self.grip = np.zeros(n, np.int8)
         self.gaps = closed.kin.g[:m].copy()
         self.solved = decide_modes(model, closed, m, 0, SLOW, work, self.grip, self.mode)
-        self.force, self.a = work.force[: 2 * m].copy(), np.zeros(n)
+        self.force, self.a = work.system.force[: 2 * m].copy(), np.zeros(n)
         accelerate(model, closed, m, work, self.a)
         # The equality system of the decided mode has the same answer as the complementarity problem that chose it.
         self.again = np.zeros(n)
@@ -201,7 +201,7 @@ SLOWEST = 1e-5  # m/s: contacts that slip less may stick
 def accelerations(case: Sparse, dry: list[int], modes: tuple[int, ...], grips: tuple[int, ...]) -> tuple[np.ndarray, ...]:
     """(u', contact forces, bearing torques) in these modes, by one linear system."""
     n, m = case.n, case.m
-    mass, h = case.model.coordinates.mass, case.work.h
+    mass, h = case.model.coordinates.mass, case.work.system.h
     friction, torque = case.friction, np.array([case.model.coordinates[j].coulomb for j in dry])
     size = n + 2 * m + len(dry)
     A, right = np.zeros((size, size)), np.zeros(size)
@@ -264,10 +264,11 @@ def test_contacts_and_bearings_move_in_the_only_way_there_is(seed: int) -> None:
     found = ways(case, dry, slips)
     assert len(found) == 1
     modes, grips, a, force = found[0]
-    work.dry[:bearings], h, inverse = dry, work.h.copy(), work.inverse.copy()
+    system, problem = work.system, work.problem
+    problem.bearing[:bearings], h, inverse = dry, system.h.copy(), system.inverse.copy()
     out_grip, out_mode = np.full(n, STICK, np.int8), np.full(2 * m, 77, np.int8)
     decide = in_python(acceleration.decide_modes)
-    assert decide(case.model, case.closed, m, bearings, SLOWEST, work, out_grip, out_mode)
+    assert decide(case.model, case.closed, m, bearings, SLOWEST, system, problem, out_grip, out_mode)
     expected = list(modes)
     for i in range(m):
         if case.friction[i] == 0.0 and modes[i] != OPEN:  # which way it slides makes no difference
@@ -275,15 +276,15 @@ def test_contacts_and_bearings_move_in_the_only_way_there_is(seed: int) -> None:
     assert [out_mode[k] for k in case.closed.ids[:m]] == expected
     assert np.count_nonzero(out_mode == 77) == m
     assert [out_grip[j] for j in dry] == list(grips)
-    assert work.force[: 2 * m] == pytest.approx(force, abs=1e-12)
+    assert system.force[: 2 * m] == pytest.approx(force, abs=1e-12)
     for j, grip in zip(dry, grips, strict=True):
         inverse[j] *= grip != STICK
         h[j] -= SIGN[grip] * case.model.coordinates[j].coulomb
-    assert work.h == pytest.approx(h) and work.inverse == pytest.approx(inverse)
-    for values in (work.b, work.size, work.loaded):
+    assert system.h == pytest.approx(h) and system.inverse == pytest.approx(inverse)
+    for values in (system.b, system.size, problem.loaded):
         assert not np.isnan(values[: 2 * m + bearings]).any() and np.isnan(values[2 * m + bearings :]).all()
     speeding = np.zeros(n)
-    in_python(acceleration.accelerate)(case.model, case.closed, m, work, speeding)
+    in_python(acceleration.accelerate)(case.model, case.closed, m, system, speeding)
     assert speeding == pytest.approx(a, abs=1e-12)
 
 
@@ -298,14 +299,14 @@ def test_forces_in_decided_modes_solve_one_linear_system(seed: int, light: float
     modes = tuple(int(mode) for mode in rng.choice([STICK, FORWARD, BACKWARD], 3))
     case.model.laws.friction[case.model.contacts[case.closed.ids[seed % 3]].group] = case.friction[seed % 3] = 5e-4
     _, force, _ = accelerations(case, [], modes, ())
-    for values in (case.model.coordinates.mass, case.work.h):
+    for values in (case.model.coordinates.mass, case.work.system.h):
         values[4:] *= light
-    case.work.inverse[:] = 1.0 / case.model.coordinates.mass
+    case.work.system.inverse[:] = 1.0 / case.model.coordinates.mass
     by_number = np.full(6, 55, np.int8)
     by_number[case.closed.ids[:3]] = modes
-    assert in_python(acceleration.solve_mode)(case.model, case.closed, 3, by_number, 1.0, case.work)
+    assert in_python(acceleration.solve_mode)(case.model, case.closed, 3, by_number, 1.0, case.work.system, case.work.modes)
     force[2:4] *= light
-    assert case.work.force[:6] == pytest.approx(force, rel=1e-9, abs=0.0)
+    assert case.work.system.force[:6] == pytest.approx(force, rel=1e-9, abs=0.0)
 
 
 # Are the sums over the coordinates of each contact those of whole matrices?
@@ -318,18 +319,18 @@ def made(seed: int) -> tuple[Sparse, np.random.Generator]:
     rng = np.random.default_rng(seed)
     case = Sparse(rng, 1 + seed % 4, 6)
     case.model.coordinates.driven[2] = 1
-    case.work.inverse[2] = 0.0
+    case.work.system.inverse[2] = 0.0
     return case, rng
 
 
 @SEEDS
 def test_impulses_change_rates_by_the_matrix_of_delassus(seed: int) -> None:
     case, _ = made(seed)
-    work, rows = case.work, 2 * case.m
-    work.G[:] = np.nan
-    in_python(delassus.fill_delassus)(case.closed, case.m, work)
-    assert work.G[:rows, :rows] == pytest.approx(case.G)
-    assert np.isnan(work.G[rows:]).all() and np.isnan(work.G[:, rows:]).all()
+    system, rows = case.work.system, 2 * case.m
+    system.G[:] = np.nan
+    in_python(delassus.fill_delassus)(case.closed, case.m, system.inverse, system.G)
+    assert system.G[:rows, :rows] == pytest.approx(case.G)
+    assert np.isnan(system.G[rows:]).all() and np.isnan(system.G[:, rows:]).all()
 
 
 @SEEDS
@@ -343,8 +344,8 @@ def test_rates_of_contacts_and_what_drives_do_against_their_impulses(seed: int) 
     spent = in_python(delassus.drive_through_contacts)(case.model, case.closed, case.m, force, u)
     assert spent == pytest.approx(-(case.W.T @ force)[[2, 4]] @ u[[2, 4]])
     change = np.ones(6)
-    in_python(delassus.apply)(case.closed, case.m, force, case.work.inverse, change)
-    assert change == pytest.approx(1.0 + case.work.inverse * (case.W.T @ force))
+    in_python(delassus.apply)(case.closed, case.m, force, case.work.system.inverse, change)
+    assert change == pytest.approx(1.0 + case.work.system.inverse * (case.W.T @ force))
 
 
 @SEEDS

@@ -331,15 +331,16 @@ def test_two_contacts_rebound_by_their_laws(seed: int, kind: int) -> None:
     total = first.copy()
     if np.any((eps > 0.0) & (first[::2] > 0.0)):
         total += expanded(G, rates, first, eps, case.laws)
-    case.work.inverse[:], after = np.nan, u.copy()
-    assert in_python(impact.impact)(case.model, case.closed, M, eps, 0.0, case.work, after)
-    assert case.work.force[: 2 * M] == pytest.approx(total, abs=1e-10)
+    case.work.system.inverse[:], after = np.nan, u.copy()
+    system, problem, phases = case.work.system, case.work.problem, case.work.phases
+    assert in_python(impact.impact)(case.model, case.closed, M, eps, 0.0, system, problem, phases, after)
+    assert phases.impulse[: 2 * M] == pytest.approx(total, abs=1e-10)
     assert after == pytest.approx(u + (case.W / mass).T @ total, abs=1e-10)
-    assert case.work.b[: 2 * M] == pytest.approx(rates)
-    rough, posed = int(np.count_nonzero(case.friction)), case.work.posed
+    assert phases.rates[: 2 * M] == pytest.approx(rates)
+    rough, posed = int(np.count_nonzero(case.friction)), problem.last
     level = Level.EXPANSION if np.any((eps > 0.0) & (first[::2] > 0.0)) else Level.COMPRESSION
     assert (posed.contacts, posed.elements, posed.bearings, posed.level) == (M, rough, 0, level)
-    gained, terms = in_python(impact.energy_change)(M, case.work)
+    gained, terms = in_python(impact.energy_gain)(M, system.G, phases.rates, phases.impulse)
     assert gained == pytest.approx(0.5 * float(mass @ (after**2 - u**2)), abs=1e-12)
     by_hand = np.abs(total) @ np.abs(rates) + 0.5 * np.abs(total) @ np.abs(G @ total)
     assert terms == pytest.approx(by_hand)
@@ -350,12 +351,13 @@ def test_over_a_time_what_forces_would_do_is_stopped_too(seed: int) -> None:
     rng = np.random.default_rng(seed)
     case = Sparse(rng, M, N, friction=0.25, slots=(5, 7))
     u, time = rng.normal(size=N), float(rng.uniform(0.3, 0.9))
-    rates = case.W @ (u + time * case.work.h * case.work.inverse) + time * case.bars
-    case.work.b[2 * M :] = 5.0
-    assert in_python(impact.plastic_impact)(case.model, case.closed, M, time, u, case.work)
-    assert np.all(case.work.b[2 * M :] == 5.0)
-    assert case.work.force[: 2 * M] == pytest.approx(compressed(case.G, rates, case.friction), abs=1e-10)
-    posed = case.work.posed
+    system, problem, phases = case.work.system, case.work.problem, case.work.phases
+    rates = case.W @ (u + time * system.h * system.inverse) + time * case.bars
+    system.b[2 * M :] = 5.0
+    assert in_python(impact.plastic_impact)(case.model, case.closed, M, time, u, system, problem, phases)
+    assert np.all(system.b[2 * M :] == 5.0)
+    assert phases.impulse[: 2 * M] == pytest.approx(compressed(case.G, rates, case.friction), abs=1e-10)
+    posed = problem.last
     assert (posed.contacts, posed.elements, posed.bearings, posed.level) == (M, M, 0, Level.COMPRESSION)
 
 

@@ -12,9 +12,8 @@ from naive.lcp_oracle import residual, solutions
 from plain_kernels import in_python
 from random_contacts import random_case
 
-from watchsim.dynamics import friction as coulomb
-from watchsim.dynamics import friction as handedness
-from watchsim.dynamics.delassus import ContactWork, ContactWorkRef, contact_work
+from watchsim.dynamics import friction
+from watchsim.dynamics.contact_work import ContactWork, contact_work, contact_work_by_reference
 from watchsim.dynamics.friction import (
     _detour,
     _solve_copositive,
@@ -24,8 +23,7 @@ from watchsim.dynamics.friction import (
     fill_rhs,
     solve_contacts,
 )
-from watchsim.dynamics.lcp import LcpWorkRef
-from watchsim.dynamics.lcp import Solver as Rung
+from watchsim.dynamics.lcp import Level, Solver
 from watchsim.jit import entry
 
 # Is each rung of the ladder right by itself, and together do they find a solution exactly when there is one?
@@ -36,23 +34,23 @@ NONE = np.zeros(0)
 
 @entry
 def _asked(what, work, m, size, coefficient, b):
-    """One entry for the whole ladder: what its rungs share is compiled once."""
-    room = ContactWorkRef(LcpWorkRef(*work.lcp), *work[1:])
-    answer = 0
+    """One entry for the whole ladder: what its solvers share is compiled once."""
+    room = contact_work_by_reference(work)
+    problem, answer = room.problem, 0
     if what == ADD:
-        add_element(room, m, size, (coefficient, 0.0, 0.0))
+        add_element(problem, m, size, (coefficient, 0.0, 0.0))
     elif what == FILL:
-        answer = int(fill_matrix(room, m, size))
+        answer = int(fill_matrix(room.system.G, m, size, problem))
     elif what == LOAD:
-        fill_rhs(room, m, size, b)
+        fill_rhs(b, m, size, problem)
     elif what == SOLVE:
-        answer = solve_contacts(room, m, size) + 0  # a number, not a Rung
+        answer = solve_contacts(m, size, 0, Level.COMPRESSION, problem) + 0  # a number, not a Solver
     elif what == COPOSITIVE:
-        answer = int(_solve_copositive(room, m, size))
+        answer = int(_solve_copositive(m, size, problem))
     elif what == OTHER_PATHS:
-        answer = int(_detour(room, size, m > 0))
+        answer = int(_detour(size, m > 0, problem))
     else:
-        answer = int(enumerate_modes(room, m, size))
+        answer = int(enumerate_modes(m, size, problem))
     return answer
 
 
@@ -69,12 +67,12 @@ def compression(rng: np.random.Generator, m: int, n: int, friction: float) -> tu
 def filled(G: np.ndarray, b: np.ndarray, mu: np.ndarray) -> tuple[ContactWork, int, np.ndarray, np.ndarray]:
     m = len(mu)
     work = contact_work(m, 1)
-    work.G[: 2 * m, : 2 * m], work.drag[:m] = G, mu
+    work.system.G[: 2 * m, : 2 * m], work.problem.drag[:m] = G, mu
     for i in range(m):
         asked(ADD, work, i, i, 2.0 * mu[i])
     size = asked(FILL, work, m, m)
     asked(LOAD, work, m, m, b=b)
-    return work, size, work.A[:size, :size].copy(), work.rhs[:size].copy()
+    return work, size, work.problem.A[:size, :size].copy(), work.problem.rhs[:size].copy()
 
 
 def check_against_the_oracle(count: int, seed: int) -> tuple[int, int]:
@@ -84,11 +82,11 @@ def check_against_the_oracle(count: int, seed: int) -> tuple[int, int]:
     for trial in range(count):
         m = 1 + trial % 2
         work, size, A, b = compression(rng, m, 1 + trial % 4, 3.0)
-        rung = asked(SOLVE, work, m, m)
+        solver = asked(SOLVE, work, m, m)
         truth = solutions(A, b)
-        if rung != Rung.FAILED:
-            assert residual(A, b, work.x[:size]) < 1e-9
-            lower += rung != Rung.LEMKE
+        if solver != Solver.FAILED:
+            assert residual(A, b, work.problem.x[:size]) < 1e-9
+            lower += solver != Solver.LEMKE
         else:
             assert not truth
             unsolvable += 1
@@ -114,16 +112,16 @@ ALONE = {  # one rung: problems given to it, how many of them it solves at least
 
 
 @pytest.mark.parametrize("m", [1, 2, 3])
-@pytest.mark.parametrize("rung", ALONE)
-def test_each_lower_rung_alone_solves_impacts(rung: str, m: int) -> None:
-    solve, given, least = ALONE[rung]
+@pytest.mark.parametrize("method", ALONE)
+def test_each_other_method_alone_solves_impacts(method: str, m: int) -> None:
+    solve, given, least = ALONE[method]
     rng = np.random.default_rng(80 + m)
     solved = 0
     for _ in range(given):
         work, size, A, b = compression(rng, m, 3, 1.5)
         if solve(work, m, size):
             solved += 1
-            assert residual(A, b, work.x[:size]) < 1e-9
+            assert residual(A, b, work.problem.x[:size]) < 1e-9
     assert solved >= least
 
 
@@ -142,28 +140,28 @@ def test_small_approaches_beside_fast_slips_are_seen(number: int) -> None:
     for row, column, value in problem["A"]:
         A[row, column] = value
     work, size = contact_work(problem["contacts"], 1), len(rhs)
-    work.A[:size, :size], work.rhs[:size] = A, rhs
+    work.problem.A[:size, :size], work.problem.rhs[:size] = A, rhs
     assert asked(OTHER_PATHS, work, 1, size)
-    assert residual(A, rhs, work.x[:size]) < 1e-9 * -rhs.min()
+    assert residual(A, rhs, work.problem.x[:size]) < 1e-9 * -rhs.min()
 
 
 def test_a_jammed_rotor_needs_the_second_rung() -> None:
     """One rotor on a stop, friction above |a/b|: the first form can end on a ray, the copositive one does not."""
     rng = np.random.default_rng(95)
-    rungs = np.zeros(len(Rung), int)
+    solvers = np.zeros(len(Solver), int)
     for _ in range(3000):
         a, b = rng.normal(size=2)
         mu = rng.uniform(0.0, 3.0)
         arms = np.array([a, b])
         work, size, A, rhs = filled(np.outer(arms, arms), arms * -np.sign(a) * rng.uniform(0.1, 1.0), np.array([mu]))
-        rung = asked(SOLVE, work, 1, 1)
-        assert rung != Rung.FAILED
-        assert residual(A, rhs, work.x[:size]) < 1e-9
-        rungs[rung] += 1
-        if rung != Rung.LEMKE:
+        solver = asked(SOLVE, work, 1, 1)
+        assert solver != Solver.FAILED
+        assert residual(A, rhs, work.problem.x[:size]) < 1e-9
+        solvers[solver] += 1
+        if solver != Solver.LEMKE:
             assert mu * abs(b) > abs(a)
-    assert rungs[Rung.COPOSITIVE] > 0
-    assert rungs[Rung.FAILED] == 0
+    assert solvers[Solver.COPOSITIVE] > 0
+    assert solvers[Solver.FAILED] == 0
 
 
 @pytest.mark.parametrize("decades", [1e-12, 1e12])
@@ -176,8 +174,8 @@ def test_badly_scaled_contacts(decades: float) -> None:
         rates = case.W @ rng.normal(size=3)
         plain = filled(case.G, rates, case.friction)
         scaled = filled(case.G * np.outer(unit, unit), rates * unit, case.friction)
-        assert Rung.FAILED not in (asked(SOLVE, plain[0], 2, 2), asked(SOLVE, scaled[0], 2, 2))
-        np.testing.assert_allclose(scaled[0].x[:2], plain[0].x[:2], rtol=1e-9, atol=1e-11)
+        assert Solver.FAILED not in (asked(SOLVE, plain[0], 2, 2), asked(SOLVE, scaled[0], 2, 2))
+        np.testing.assert_allclose(scaled[0].problem.x[:2], plain[0].problem.x[:2], rtol=1e-9, atol=1e-11)
 
 
 def test_more_contacts_than_coordinates_are_solved_quickly() -> None:
@@ -185,8 +183,8 @@ def test_more_contacts_than_coordinates_are_solved_quickly() -> None:
     rng = np.random.default_rng(101)
     for _ in range(20):
         work, size, A, b = compression(rng, 12, 3, 0.5)
-        if asked(SOLVE, work, 12, 12) != Rung.FAILED:
-            assert residual(A, b, work.x[:size]) < 1e-8
+        if asked(SOLVE, work, 12, 12) != Solver.FAILED:
+            assert residual(A, b, work.problem.x[:size]) < 1e-8
 
 
 # Do the complementarity problems say the law of each friction force, in unscaled forces and rates?
@@ -202,12 +200,12 @@ def posed(seed: int) -> tuple[ContactWork, np.ndarray, np.random.Generator]:
     """Any G, any intervals of friction; and rates of the rows."""
     rng = np.random.default_rng(seed)
     work = contact_work(M, BEARINGS)
-    work.A[:], work.rhs[:] = np.nan, np.nan
-    work.G[:] = rng.normal(size=(ROWS, ROWS))
-    work.G[np.arange(ROWS), np.arange(ROWS)] = 10.0 ** rng.uniform(-3.0, 3.0, ROWS)
-    work.drag[:] = rng.normal(size=M)
+    work.problem.A[:], work.problem.rhs[:] = np.nan, np.nan
+    work.system.G[:] = rng.normal(size=(ROWS, ROWS))
+    work.system.G[np.arange(ROWS), np.arange(ROWS)] = 10.0 ** rng.uniform(-3.0, 3.0, ROWS)
+    work.problem.drag[:] = rng.normal(size=M)
     for e, block in enumerate(BLOCKS):
-        assert in_python(coulomb.add_element)(work, block, e, tuple(rng.uniform(0.1, 1.0, 3))) == e + 1
+        assert in_python(friction.add_element)(work.problem, block, e, tuple(rng.uniform(0.1, 1.0, 3))) == e + 1
     return work, rng.normal(size=ROWS), rng
 
 
@@ -215,29 +213,34 @@ def posed(seed: int) -> tuple[ContactWork, np.ndarray, np.random.Generator]:
 def test_lines_are_rates_of_gaps_and_slips_and_what_is_left_of_intervals(seed: int) -> None:
     """For any forces above the lower ends, whatever their units: those give G a diagonal of one."""
     work, b, rng = posed(seed)
-    assert in_python(coulomb.fill_matrix)(work, M, ELEMENTS) == SIZE
-    in_python(coulomb.fill_rhs)(work, M, ELEMENTS, b)
+    G, problem = work.system.G, work.problem
+    sign = problem.friction_sign
+    sign[list(ROW_OF)] = rng.choice([-1.0, 1.0], ELEMENTS)
+    assert in_python(friction.fill_matrix)(G, M, ELEMENTS, problem) == SIZE
+    in_python(friction.fill_rhs)(b, M, ELEMENTS, problem)
     above, slip, pressed = rng.normal(size=ELEMENTS), rng.normal(size=ELEMENTS), rng.normal(size=M)
-    own = np.diag(work.G)
+    own = np.diag(G)
     unit = np.append(np.maximum(own[:6:2], own[1:6:2]), own[6:]) ** -0.5
-    assert work.unit == pytest.approx(unit)
+    assert problem.unit == pytest.approx(unit)
     force = np.zeros(ROWS)  # less the constant parts of the lower ends, which are in b
-    force[:6:2], force[1:6:2] = pressed, -work.drag * pressed
+    force[:6:2], force[1:6:2] = pressed, -problem.drag * pressed
     for e, row in enumerate(ROW_OF):
         force[row] += above[e]
-    rates, units = b + work.G @ force, unit[list(BLOCKS)]
-    width = [pressed[block] * work.width[e] if block < M else 0.0 for e, block in enumerate(BLOCKS)]
+    force *= sign
+    rates, units = sign * (b + G @ force), unit[list(BLOCKS)]
+    width = [pressed[block] * problem.width[e] if block < M else 0.0 for e, block in enumerate(BLOCKS)]
     unknowns = np.concatenate([pressed / unit[:M], above / units, slip])
-    found = work.A[:SIZE, :SIZE] @ unknowns + work.rhs[:SIZE]
+    found = work.problem.A[:SIZE, :SIZE] @ unknowns + work.problem.rhs[:SIZE]
     assert found[:M] == pytest.approx(unit[:M] * rates[:6:2])
     assert found[M : M + ELEMENTS] == pytest.approx(units * rates[list(ROW_OF)] + slip)
-    assert found[M + ELEMENTS :] == pytest.approx((width + work.span[:ELEMENTS] - above) / units)
-    assert np.isnan(work.A[SIZE:]).all() and np.isnan(work.A[:, SIZE:]).all() and np.isnan(work.rhs[SIZE:]).all()
-    work.x[:SIZE] = unknowns
+    assert found[M + ELEMENTS :] == pytest.approx((width + problem.span[:ELEMENTS] - above) / units)
+    for unused in (problem.A[SIZE:], problem.A[:, SIZE:], problem.rhs[SIZE:]):
+        assert np.isnan(unused).all()
+    work.problem.x[:SIZE] = unknowns
     forces = np.zeros(ROWS)
-    in_python(coulomb.read_forces)(work, M, ELEMENTS, forces)
+    in_python(friction.read_forces)(M, ELEMENTS, problem, forces)
     for e, row in enumerate(ROW_OF):
-        force[row] += work.shift[e]
+        force[row] += sign[row] * problem.shift[e]
     assert forces == pytest.approx(force)
 
 
@@ -249,19 +252,13 @@ def reversed_rows(slip: list[float], across: float = 0.5, own: tuple[float, floa
     G[1, 1], G[2 * block + (block < 2), 2 * block + (block < 2)] = own
     G[1, 0] = G[0, 1] = across
     G[3, 2] = G[2, 3] = across
-    rates = np.array(slip)
-    work = SimpleNamespace(G=G.copy(), hand=np.full(5, 9.0), block=np.array([0, block]), force=rng.normal(size=5))
-    force = work.force.copy()
-    in_python(handedness.reverse_directions)(work, 2, 5, 2, rates)
-    hand = work.hand.copy()
-    assert np.array_equal(work.G, G * np.outer(hand, hand)) and np.array_equal(rates, hand * slip)
-    in_python(handedness.restore_directions)(work, 5, rates)
-    assert np.array_equal(work.G, G) and rates.tolist() == slip and work.force == pytest.approx(hand * force)
-    return list(hand)
+    problem = SimpleNamespace(friction_sign=np.full(5, 9.0), block=np.array([0, block]))
+    in_python(friction.choose_signs)(G, np.array(slip), 2, 5, 2, problem)
+    return list(problem.friction_sign)
 
 
 def test_directions_are_taken_such_that_slips_are_positive() -> None:
-    """In the rows of elements alone; G, slips and forces change with them, and back."""
+    """In the rows of elements alone."""
     assert reversed_rows([-1.0, -0.3, -1.0, 0.4, -2.0]) == [1, -1, 1, 1, 1]
     assert reversed_rows([1.0, 0.3, 1.0, -0.4, 2.0]) == [1, 1, 1, -1, 1]
     assert reversed_rows([-1.0, -0.3, -1.0, -0.4, -2.0], block=2) == [1, -1, 1, 1, -1]

@@ -10,9 +10,9 @@ import pytest
 from naive.lcp_oracle import residual, solutions
 from plain_kernels import in_python
 
-from watchsim.dynamics import delassus as small_systems
 from watchsim.dynamics import lcp as basis
 from watchsim.dynamics import lcp as lemke_pivoting
+from watchsim.dynamics import redundant as small_systems
 from watchsim.dynamics.lcp import LcpOutcome, LcpWork, enumerate_lcp, lcp_work, lemke, solve_lcp
 
 # Does the complementarity solver find what all complementary bases, tried one by one, say there is?

@@ -11,9 +11,8 @@ from plain_kernels import in_python
 from random_contacts import Case
 
 from watchsim.contact.gaps import STICK
-from watchsim.dynamics import delassus as redundant_contacts
-from watchsim.dynamics import delassus as small_systems
-from watchsim.dynamics.delassus import ContactWork, contact_work
+from watchsim.dynamics import redundant
+from watchsim.dynamics.contact_work import ContactWork, contact_work
 from watchsim.verification.contact_problems import accelerate, decide_modes, solve_mode
 
 # Are accelerations right and forces the smallest possible where contacts are redundant?
@@ -21,12 +20,12 @@ from watchsim.verification.contact_problems import accelerate, decide_modes, sol
 
 def resting(case: Case, h: np.ndarray, sticks: bool = True) -> tuple[bool, np.ndarray, np.ndarray]:
     """Forces unique?, forces, accelerations of the case with all contacts closed, at rest, under the generalized forces h."""
-    case.work.h[:], case.work.inverse[:] = h, 1.0 / case.mass
+    case.work.system.h[:], case.work.system.inverse[:] = h, 1.0 / case.mass
     case.closed.kin.bar_N[:], case.closed.kin.bar_T[:] = 0.0, 0.0
     unique = solve_mode(case.model, case.closed, case.m, np.full(case.m, STICK if sticks else 1, np.int8), 1.0, case.work)
     a = np.zeros(case.n)
     accelerate(case.model, case.closed, case.m, case.work, a)
-    return bool(unique), case.work.force[: 2 * case.m].copy(), a
+    return bool(unique), case.work.system.force[: 2 * case.m].copy(), a
 
 
 def smallest(case: Case, h: np.ndarray) -> np.ndarray:
@@ -140,13 +139,13 @@ def test_forces_do_not_turn_what_dry_friction_holds() -> None:
     case.model.coordinates.flags.writeable = True
     case.model.coordinates[1].coulomb = dry
     case.model.coordinates.flags.writeable = False  # machine code for arrays that can be written would be another one
-    case.work.h[:], case.work.inverse[:] = [-moment, 0.0], [1.0 / 0.3, 0.0]
+    case.work.system.h[:], case.work.system.inverse[:] = [-moment, 0.0], [1.0 / 0.3, 0.0]
     case.closed.kin.bar_N[:], case.closed.kin.bar_T[:] = 0.0, 0.0
     plain = moment * np.array([a, b]) / (a * a + b * b)
     assert plain @ [c, d] > dry
     unique = solve_mode(case.model, case.closed, 1, np.full(1, STICK, np.int8), 1.0, case.work)
     assert not unique
-    assert case.work.force[:2] == pytest.approx(np.linalg.solve([[a, b], [c, d]], [moment, dry]), rel=1e-9)
+    assert case.work.system.force[:2] == pytest.approx(np.linalg.solve([[a, b], [c, d]], [moment, dry]), rel=1e-9)
 
 
 def test_laws_that_leave_no_forces_are_missed_by_as_little() -> None:
@@ -178,12 +177,13 @@ def eliminated(rng: np.random.Generator, rank: int) -> tuple[ContactWork, np.nda
     half, units = rng.normal(size=(UNKNOWNS, rank)), 10.0 ** rng.uniform(-1.0, 1.0, UNKNOWNS)
     A = half @ half.T * np.outer(units, units)
     b = A @ (np.array([1.0, 0.7, 1.3, 0.1, -0.2]) / units)
-    work.A[:UNKNOWNS, :UNKNOWNS], work.rhs[:UNKNOWNS], work.scale[:UNKNOWNS] = A, b, np.diag(A) ** -0.5
-    work.tangent[:], work.drag[:], work.width[:M] = TANGENT, [0.0, 0.6, 0.0], [0.5, 0.0, 0.8]
-    work.G[:], work.size[:] = np.eye(len(work.G)), 1.0
-    solve = in_python(small_systems.solve_small)
-    assert solve(work.A, work.rhs, UNKNOWNS, work.scale, work.order, work.x, 1e-11) == rank
-    assert A @ work.x[:UNKNOWNS] == pytest.approx(b)
+    system, modes = work.system, work.modes
+    modes.A[:UNKNOWNS, :UNKNOWNS], modes.rhs[:UNKNOWNS], modes.scale[:UNKNOWNS] = A, b, np.diag(A) ** -0.5
+    modes.unknown[:], modes.drag[:], modes.friction[:] = TANGENT, [0.0, 0.6, 0.0], [0.5, 0.0, 0.8]
+    system.G[:], system.size[:] = np.eye(len(system.G)), 1.0
+    solve = in_python(redundant.solve_small)
+    assert solve(modes.A, modes.rhs, UNKNOWNS, modes.scale, modes.order, modes.x, 1e-11) == rank
+    assert A @ modes.x[:UNKNOWNS] == pytest.approx(b)
     return work, A, b
 
 
@@ -213,10 +213,10 @@ def smallest_smallest_forces(A: np.ndarray, start: np.ndarray, rank: int) -> tup
 def test_the_smallest_forces_that_obey_the_laws_are_taken(seed: int, rank: int) -> None:
     """By the sum of squares of all forces, friction of sliding contacts among them; without such forces the smallest of all."""
     work, A, b = eliminated(np.random.default_rng(seed), rank)
-    plain, lawful = smallest_smallest_forces(A, work.x[:UNKNOWNS].copy(), rank)
-    in_python(redundant_contacts.smallest_forces)(MODEL, None, M, UNKNOWNS, rank, 1.0, work)
-    assert A @ work.x[:UNKNOWNS] == pytest.approx(b, rel=1e-8)
-    assert work.x[:UNKNOWNS] == pytest.approx(plain if lawful is None else lawful, abs=1e-8)
+    plain, lawful = smallest_smallest_forces(A, work.modes.x[:UNKNOWNS].copy(), rank)
+    in_python(redundant.smallest_forces)(MODEL, None, M, UNKNOWNS, rank, 1.0, work.system, work.modes)
+    assert A @ work.modes.x[:UNKNOWNS] == pytest.approx(b, rel=1e-8)
+    assert work.modes.x[:UNKNOWNS] == pytest.approx(plain if lawful is None else lawful, abs=1e-8)
 
 
 def test_of_these_some_obey_the_laws_by_themselves_most_with_a_change_and_some_not_at_all() -> None:
@@ -224,6 +224,6 @@ def test_of_these_some_obey_the_laws_by_themselves_most_with_a_change_and_some_n
     found = []
     for seed, rank in itertools.product(range(8), (2, 3, 4)):
         work, A, _ = eliminated(np.random.default_rng(seed), rank)
-        plain, lawful = smallest_smallest_forces(A, work.x[:UNKNOWNS].copy(), rank)
+        plain, lawful = smallest_smallest_forces(A, work.modes.x[:UNKNOWNS].copy(), rank)
         found.append("none" if lawful is None else "change" if laws(plain).min() < -1e-3 else "plain")
     assert {word: found.count(word) for word in ("plain", "change", "none")} == {"plain": 5, "change": 17, "none": 2}

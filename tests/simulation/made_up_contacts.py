@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.contact.gaps import Closed, closed_contacts
-from watchsim.dynamics.delassus import ContactWork, contact_work
+from watchsim.simulation.scratch import Projection, _projection_room
 
 Array = NDArray[np.float64]
 
@@ -28,13 +28,12 @@ def closed_of(normal: Array, tangential: Array, ids: list[int] | None = None, **
     return closed
 
 
-def work_of(m: int, inverse: Array) -> ContactWork:
-    """Room for so many contacts and no more, with these inverse masses; whatever else was in it before."""
-    work = contact_work(m, len(inverse))
-    for array in work[1:-1]:
+def projection_of(m: int, n: int) -> Projection:
+    """Room for so many contacts and no more on n coordinates; whatever was in it before."""
+    projection = _projection_room(n, m)
+    for array in projection:
         array[...] = 1 if array.dtype.kind == "i" else 77.0
-    work.inverse[:] = inverse
-    return work
+    return projection
 
 
 def both(normal: Array, tangential: Array) -> Array:

@@ -45,7 +45,7 @@ class Search:
         self.longest, self.kind = given.pop("longest", math.inf), given.pop("kind", LINE)
         self.now, self.looks, self.calls, self.instead = math.nan, [], [], given  # type: ignore[var-annotated]
 
-    def place(self, model, state, bodies, tau, step, path) -> None:
+    def place(self, model, bodies, tau, step, path) -> None:
         assert bodies == (7, 8)
         self.now = float(tau)
 
@@ -66,7 +66,7 @@ class Search:
         primitives = [None, SimpleNamespace(body=7, radius=0.0, length=RADIUS), SimpleNamespace(body=8, radius=RADIUS)]
         primitives[2].kind = self.kind  # type: ignore[union-attr]
         model = SimpleNamespace(contacts=[None, SimpleNamespace(a=1, b=2)], primitives=primitives)
-        state = SimpleNamespace(counts=SimpleNamespace(gap_evaluations=5))
+        counts = SimpleNamespace(gap_evaluations=5)
         instead = {
             "_place": self.place,
             "placed_gap": self.placed_gap,
@@ -80,10 +80,10 @@ class Search:
         self.turns, self.end = 0, end
         while True:
             before = len(self.looks)
-            time, closes = search(model, state, OPTIONS, 1, start, end, None, SimpleNamespace(pose=None))
+            time, closes = search(model, [], 0, OPTIONS, 1, (start, end), None, SimpleNamespace(pose=None), counts)
             self.turns += 1
             assert self.turns < 100
-            assert len(self.looks) - before <= 16 and state.counts.gap_evaluations == 5 + len(self.looks)
+            assert len(self.looks) - before <= 16 and counts.gap_evaluations == 5 + len(self.looks)
             if closes or time >= end:
                 return float(time), bool(closes)
             start = time
@@ -320,7 +320,7 @@ def test_a_contact_that_is_held_is_looked_at_again_when_it_could_have_come_apart
     held = iter([0.125, 0.25, 0.0])
     given: list[Any] = []
 
-    def time_held(model, state, options, k, tau, rate, bounds, path) -> float:
+    def time_held(model, active, in_force, options, k, tau, rate, bounds, path) -> float:
         given.append((tau, rate, bounds[2:]))
         return next(held)
 
@@ -339,7 +339,7 @@ def beside_still(kind: int, still: Callable[[float], float]) -> tuple[list[float
     """(times of the looks, (room, time left) asked for) at a gap that stands still, beside its primitives."""
     asked: list[tuple[float, float]] = []
 
-    def time_still(model, state, k, room, left, tau, step, path) -> float:
+    def time_still(model, k, room, left, tau, step, path) -> float:
         asked.append((room, left))
         return still(left)
 
@@ -367,7 +367,7 @@ def test_a_finer_bound_is_asked_for_where_a_look_is_shorter_than_a_64th_of_what_
     for helps in (True, False):
         rooms: list[Any] = []
 
-        def time_apart(model, state, k, room, left, tau, step, path, rooms=rooms) -> float:
+        def time_apart(model, k, room, left, tau, step, path, rooms=rooms) -> float:
             rooms.append((room, left))
             return 0.75
 

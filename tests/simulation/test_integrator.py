@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from every_time import few
-from made_up_contacts import both, closed_of, named, work_of
+from made_up_contacts import both, closed_of, named, projection_of
 from moving_scenes import bowl, circle, polygon, profile, touching
 from numpy.polynomial import Polynomial
 from plain_kernels import in_python
@@ -181,8 +181,8 @@ def test_gaps_are_closed_by_the_smallest_change(seed: int, m: int, all_of_them: 
     gaps = np.array([5e-8, -7e-8, -3e-8])[:m]
     q = np.random.default_rng(seed).normal(size=7)
     moved = q.copy()
-    closed, work = closed_of(normal, tangential, g=gaps.tolist()), work_of(m, inverse)
-    deepest = in_python(drift_projection.project_positions)(closed, m, all_of_them, BEHIND, work, moved)
+    closed, work = closed_of(normal, tangential, g=gaps.tolist()), projection_of(m, len(inverse))
+    deepest = in_python(drift_projection.project_positions)(closed, m, all_of_them, BEHIND, inverse, work, moved)
     wanted = -gaps if all_of_them else np.where(gaps < 0.0, -gaps, 0.0)
     assert deepest == 7e-8
     assert moved - q == pytest.approx(least(normal, wanted, inverse), rel=1e-6, abs=1e-14)
@@ -194,8 +194,8 @@ def test_of_gaps_that_depend_on_each_other_those_met_first_are_closed() -> None:
     inverse = np.array([1.0, 1.0])
     gaps = [-3e-8, -2e-8, -9e-8]  # over the lengths of their directions: 3, 1, 9
     q = np.zeros(2)
-    closed, work = closed_of(normal, 0.01 * normal[:, ::-1], g=gaps), work_of(3, inverse)
-    assert in_python(drift_projection.project_positions)(closed, 3, True, BEHIND, work, q) == 9e-8
+    closed, work = closed_of(normal, 0.01 * normal[:, ::-1], g=gaps), projection_of(3, len(inverse))
+    assert in_python(drift_projection.project_positions)(closed, 3, True, BEHIND, inverse, work, q) == 9e-8
     assert q == pytest.approx(np.linalg.solve(normal[[0, 2]], [3e-8, 9e-8]), rel=1e-9, abs=0.0)
     assert work.correction[:6] == pytest.approx([work.correction[0], 0.0, 0.0, 0.0, work.correction[4], 0.0])
 
@@ -210,8 +210,8 @@ def test_rates_of_what_is_in_force_and_slips_of_what_sticks_vanish(seed: int, mo
     closed = closed_of(normal, tangential, ids, gN_dot=rates.tolist(), gT_dot=slips.tolist())
     mode = np.zeros(8, np.int8)
     mode[ids] = modes
-    work, changed = work_of(3, inverse), u.copy()
-    in_python(drift_projection.project_velocities)(closed, 3, mode, INDEPENDENT, work, changed)
+    work, changed = projection_of(3, len(inverse)), u.copy()
+    in_python(drift_projection.project_velocities)(closed, 3, mode, INDEPENDENT, inverse, work, changed)
     rows = [2 * i for i in range(3) if modes[i] != OPEN] + [2 * i + 1 for i in range(3) if modes[i] == STICK]
     every = np.stack([rates, slips], axis=1).ravel()
     whole = both(normal, tangential)
@@ -239,7 +239,7 @@ def a_step(kind: int, n: int, seed: int = 1) -> tuple[SimpleNamespace, list[Poly
     """A step of n coordinates, and its places and velocities as polynomials of the share."""
     d = np.random.default_rng(seed).normal(size=(8, 2 * n))
     step = named(
-        span=named(kind=kind, start=5.0, length=LENGTH), y0=d[0], dense=d[1:], q=np.arange(1.0, n + 1.0),
+        span=named(kind=kind, start=5.0, length=LENGTH), y0=d[0], dense=d[1:], q=np.arange(1.0, n + 1.0), awake=[1] * n,
         u=np.arange(11.0, n + 11.0), bound=np.zeros(n),
     )  # fmt: skip
     return step, [polynomial(column) for column in d.T]
@@ -277,7 +277,7 @@ def test_bounds_are_the_largest_bernstein_coefficients_of_a_derivative(order: in
             in_python(step_path.bound_accelerations)(step, 2)
             assert step.bound[i] == pytest.approx(bound, rel=1e-9)
         else:
-            assert in_python(step_path.jerk_bound)(MODEL, named(awake=[1] * 5), step, i) == pytest.approx(bound, rel=1e-9)
+            assert in_python(step_path.jerk_bound)(MODEL, step, i) == pytest.approx(bound, rel=1e-9)
 
 
 # Does a recorded motion tell where everything is at any time, not only at its rows?

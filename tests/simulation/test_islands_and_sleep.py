@@ -115,7 +115,7 @@ def test_a_body_rests_where_its_coordinate_sleeps_and_its_carrier_too() -> None:
         ((0, 1, 0), [True, False, False, False, True]),
         ((0, 0, 1), [True, True, False, True, True]),
     ):
-        asked = [in_python(sleeping.is_at_rest)(model, named(awake=list(flags)), b) for b in range(5)]
+        asked = [in_python(sleeping.is_at_rest)(model, list(flags), b) for b in range(5)]
         assert asked == expected
 
 

@@ -382,7 +382,7 @@ def test_percussions_move_by_whole_matrices_bearings_behind_contacts(dry: list[i
     case, count = Sparse(rng, M, N), len(dry)
     work, rows = room_of(case, dry), 4 + count
     both = np.vstack([case.W, np.eye(N)[dry]])
-    work.inverse[:] = case.work.inverse
+    work.inverse[:] = case.work.system.inverse
     in_python(mobility.fill_mobility)(work, M, count)
     np.testing.assert_allclose(work.laws.G, both * work.inverse @ both.T, atol=1e-14)
     u, P, rates = rng.normal(size=N), rng.normal(size=rows), np.full(rows, np.nan)
@@ -413,13 +413,13 @@ def test_impacts_are_those_of_the_complementarity_problems(seed: int, kind: int)
     given = case.model.laws
     given.kind, given.tangential, given.nu = kind, rng.uniform(0.1, 0.9, 2 * M), rng.uniform(0.1, 0.9, 2 * M)
     given.restitution = rng.uniform(0.3, 0.9)
-    case.model.coordinates.driven[2], case.work.inverse[2] = 1, 0.0
+    case.model.coordinates.driven[2], case.work.system.inverse[2] = 1, 0.0
     eps, u, mass = case.laws.restitution, rng.normal(size=N), case.model.coordinates.mass
-    u -= (case.W * case.work.inverse).T @ np.linalg.solve(case.G, case.W @ u + [1.2, 0.3, 0.4, -0.5])
+    u -= (case.W * case.work.system.inverse).T @ np.linalg.solve(case.G, case.W @ u + [1.2, 0.3, 0.4, -0.5])
     rates, G = case.W @ u, case.G
     first = compressed(G, rates, case.friction)
     total = first + expanded(G, rates, first, eps, case.laws)
-    after = u + (case.W * case.work.inverse).T @ total
+    after = u + (case.W * case.work.system.inverse).T @ total
     written, work, state, events = stopped(case, u.copy(), 0.8)
     if state.counts.energy_rescues == 0:
         assert work.u == pytest.approx(after, abs=1e-9)
@@ -441,9 +441,9 @@ def test_impacts_are_those_of_the_complementarity_problems(seed: int, kind: int)
 
 def test_where_nothing_approaches_nothing_happens() -> None:
     case = Sparse(np.random.default_rng(1), M, N, slots=(5, 7))
-    u = (case.W * case.work.inverse).T @ np.linalg.solve(case.G, [0.3, 1.0, 0.0, -2.0])
+    u = (case.W * case.work.system.inverse).T @ np.linalg.solve(case.G, [0.3, 1.0, 0.0, -2.0])
     for name, lift in (("leaves", 1e-9), ("approaches", -1e-9)):
-        v = u + (case.W * case.work.inverse).T @ np.linalg.solve(case.G, [0.0, 0.0, lift, 0.0])
+        v = u + (case.W * case.work.system.inverse).T @ np.linalg.solve(case.G, [0.0, 0.0, lift, 0.0])
         written, work, state, events = stopped(case, v.copy(), 0.8)
         assert not written and len(events) == 0
         assert (state.counts.lcp == 0) == (name == "leaves")

@@ -234,9 +234,10 @@ from watchsim.dynamics import acceleration, impact
 from watchsim.dynamics.lcp import LcpOutcome
 from watchsim.dynamics.lcp import Solver
 
-def unsolvable(work, m, elements):
-    work.posed.lemke = LcpOutcome.RAY
-    work.rungs[Solver.FAILED] += 1
+def unsolvable(m, elements, bearings, level, problem):
+    last = problem.last
+    last.contacts, last.elements, last.bearings, last.level, last.lemke = m, elements, bearings, level, LcpOutcome.RAY
+    problem.solvers[Solver.FAILED] += 1
     return Solver.FAILED
 
 impact.solve_contacts = acceleration.solve_contacts = unsolvable

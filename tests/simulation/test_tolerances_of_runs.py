@@ -67,8 +67,8 @@ def test_a_run_begins_awake_with_an_event_and_knows_on_which_side_springs_are() 
     """Rest at 0.5; the third coordinate is seen against the first one, from which it rests 0.25 away."""
     state = a_state()
     assert (state.q.tolist(), state.u.tolist(), state.a.tolist()) == ([0.6, 0.4, 0.9], [-1.0, 2.0, -0.5], [0.0] * 3)
-    assert (state.now.event_waits, state.now.touched, state.now.lenience) == (1, NO_CONTACT, 1.0)
-    assert (state.returning.contact, state.clock.time, state.now.awake_contacts) == (NO_CONTACT, 0.0, 0)
+    assert (state.instant.event_waits, state.instant.touched, state.instant.lenience) == (1, NO_CONTACT, 1.0)
+    assert (state.returning.contact, state.clock.time, state.instant.awake_contacts) == (NO_CONTACT, 0.0, 0)
     assert state.awake.tolist() == [1] * 3 and state.grip.tolist() == [0] * 3 and state.mode.tolist() == [0] * 5
     assert (len(state.active), len(state.upto), len(state.decided)) == (48, 48, 32)
     assert state.side_u.tolist() == [-1, 1, 1]  # -0.5 against -1

@@ -19,7 +19,8 @@ from watchsim import jit
 from watchsim.contact.cell_lookup import candidates
 from watchsim.contact.cells import forget
 from watchsim.contact.gaps import place
-from watchsim.dynamics.delassus import LARGEST, copy
+from watchsim.dynamics.delassus import copy
+from watchsim.dynamics.friction import LARGEST, law_of
 from watchsim.dynamics.impact import impact
 from watchsim.dynamics.lcp import LcpOutcome, Level, lcp_work, lemke_checked
 from watchsim.mechanism.compile import compile_scene
@@ -106,7 +107,7 @@ def impacts_again(model, cells, state, options, scratch, record, collides, repea
     while first < count:
         island = island_of(m, w.event.label, w.event.listed[first])
         size = place_contacts(m, w.event.listed, first, w.event.upto[first], w.event.pose, w.event.closed)
-        set_rate_zeros(w.event.closed, size, False, o, w.event.pace, w.event.zero)
+        set_rate_zeros(w.event.closed, size, False, o, w.event.peak_speed, w.event.zero)
         approaches = approaching(size, w.event.closed, w.event.zero)
         for _ in range(repeats if approaches else 0):
             r.used.rows, r.used.events = 0, 0
@@ -125,7 +126,7 @@ def impacts_again(model, cells, state, options, scratch, record, collides, repea
 def gathered(model, cells, state, options, scratch):
     """The closed contacts by island in `scratch.event.listed`, as the event loop gathers them at an event; returns how many."""
     place(model, state.q, state.u, scratch.event.pose)
-    _, count = gather(model, cells, state, options, scratch)
+    _, count = gather(model, cells, state, options, scratch.asked, scratch.event.pose, scratch.event.listed)
     label_islands(model, scratch.event.listed, count, scratch.event.label)
     sort_by_island(model, scratch.event.label, count, scratch.event.listed, scratch.event.upto)
     return count
@@ -135,14 +136,14 @@ def gathered(model, cells, state, options, scratch):
 def pose(model, cells, state, options, scratch, record, which):
     """Leave one problem of the event that waits, of the first island that has it, in `scratch.work`; returns its size or 0."""
     m, c, s, o, w = ModelRef(*model), CellsRef(*cells), StateRef(*state), OptionsRef(*options), scratch_by_reference(scratch)
-    r, posed = RecordRef(*record), w.work.posed
+    r, posed = RecordRef(*record), w.work.problem.last
     r.used.rows, r.used.events, posed.level = 0, 0, Level.NONE
     count, first = gathered(m, c, s, o, w), 0
     while first < count and posed.level == Level.NONE:
         island = island_of(m, w.event.label, w.event.listed[first])
         size = place_contacts(m, w.event.listed, first, w.event.upto[first], w.event.pose, w.event.closed)
         first += size
-        set_rate_zeros(w.event.closed, size, False, o, w.event.pace, w.event.zero)
+        set_rate_zeros(w.event.closed, size, False, o, w.event.peak_speed, w.event.zero)
         hit = approaching(size, w.event.closed, w.event.zero)
         if which == MODES:
             if hit:
@@ -151,9 +152,9 @@ def pose(model, cells, state, options, scratch, record, which):
             decide(m, s, island, size, o, w.work, w.event, w.impact.grip)
         elif hit:
             for i in range(size):
-                law = m.laws[m.contacts[w.event.closed.ids[i]].group]
-                w.impact.restitution[i] = law.restitution if which == EXPANSION else 0.0
-            impact(m, w.event.closed, size, w.impact.restitution, 0.0, w.work, s.u)
+                restitution = law_of(m, w.event.closed.ids[i]).restitution
+                w.impact.restitution[i] = restitution if which == EXPANSION else 0.0
+            impact(m, w.event.closed, size, w.impact.restitution, 0.0, w.work.system, w.work.problem, w.work.phases, s.u)
     if which == EXPANSION and posed.level != Level.EXPANSION:
         return 0
     return posed.contacts + 2 * posed.elements if posed.level != Level.NONE else 0
@@ -307,13 +308,14 @@ def problem_costs(walk: Walk) -> dict[str, float]:
 def problems_met(walk: Walk) -> list[Problem]:
     """The problems at the events of a walk."""
     run, found = walk.run, []
+    problem = run.scratch.work.problem
     loop = run.compiled.model, run.finder.cells, run.state, run.options, run.scratch, walk.room
     for kind, posed in POSED.items():
         for moment in walk.moments[kind]:
             for which in posed:
                 walk.at(moment)
                 if n := pose(*loop, which):
-                    found.append((run.scratch.work.A[:n, :n].copy(), run.scratch.work.rhs[:n].copy()))
+                    found.append((problem.A[:n, :n].copy(), problem.rhs[:n].copy()))
     return found
 
 
@@ -396,7 +398,7 @@ def _parts(walk: Walk, moment: Moment) -> _Parts:
     run = walk.run
     state, options, scratch = run.state, run.options, run.scratch
     # Contacts are looked for up to the end of the step, or up to where a mode ends before.
-    mode_ends = state.now.event_waits == 1 and state.now.touched < 0
+    mode_ends = state.instant.event_waits == 1 and state.instant.touched < 0
     end = float(state.clock.time - scratch.step.span.start if mode_ends else scratch.step.span.length)
     walk.at(moment)
     search = seconds_each(touches_again, (run.compiled.model, run.finder.cells, state, options, end, scratch), REPEATS)

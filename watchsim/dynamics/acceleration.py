@@ -1,43 +1,34 @@
 """What are the contact forces and accelerations now?
 
-Inside a mode an equality system; at an event the acceleration-level LCP, which decides detachment and stick-slip of contacts
-and of bearings with dry friction (Pfeiffer & Glocker 1996, ch. 5; docs/theory/method.md 2.4, 2.5).
+Inside a mode an equality system (`solve_mode`); at an event the acceleration-level LCP, which decides detachment and stick-slip
+of contacts and of bearings with dry friction (`decide_modes`; Pfeiffer & Glocker 1996, ch. 5; docs/theory/method.md 2.4, 2.5).
 """
 
 from __future__ import annotations
 
 from watchsim.contact.gaps import BACKWARD, FORWARD, OPEN, STICK
-from watchsim.dynamics.delassus import (
-    apply,
-    fill_bearings,
-    fill_delassus,
-    inverse_mass,
-    note_posed,
-    own_acceleration,
-    smallest_forces,
-    solve_small,
-    unit_scale,
-)
+from watchsim.dynamics.delassus import apply, fill_bearings, fill_delassus, inverse_mass, own_acceleration
 from watchsim.dynamics.friction import (
     add_element,
+    choose_signs,
     fill_matrix,
     fill_rhs,
-    is_paradox,
+    jams,
     keep_basis,
+    law_of,
     press_unloaded,
     read_forces,
-    restore_directions,
-    reverse_directions,
     solve_contacts,
 )
 from watchsim.dynamics.lcp import Level, Solver
+from watchsim.dynamics.redundant import smallest_forces, solve_small, unit_scale
 from watchsim.jit import hot_kernel, kernel
 from watchsim.tolerances import ACCELERATION_ROUNDING, RANK
 
 
 @kernel
-def gap_accelerations(model, closed, m, work, out_b, out_size):
-    """b = Wᵀ M⁻¹ h + w̄ for the first m contacts, and the sum of its terms' magnitudes.
+def gap_accelerations(model, closed, m, system):
+    """b = Wᵀ M⁻¹ h + w̄ of the first m contacts into `system`, with the sum of its terms' magnitudes.
 
     A term that happens to vanish, as a pendulum's weight does when it hangs straight, still has the rounding of its vectors.
     """
@@ -47,224 +38,213 @@ def gap_accelerations(model, closed, m, work, out_b, out_size):
         size_N, size_T = kin.bar_size, kin.bar_size
         for k in range(closed.slots[i]):
             j = closed.coord[i, k]
-            free = own_acceleration(model, work, j)
+            free = own_acceleration(model, system, j)
             normal += closed.w_N[i, k] * free
             tangential += closed.w_T[i, k] * free
-            terms = abs(free) + model.coordinates[j].load * work.inverse[j]
+            terms = abs(free) + model.coordinates[j].load * system.inverse[j]
             size_N += abs(closed.w_N[i, k]) * terms
             size_T += abs(closed.w_T[i, k]) * terms
-        out_b[2 * i], out_b[2 * i + 1] = normal, tangential
-        out_size[2 * i], out_size[2 * i + 1] = size_N, size_T
+        system.b[2 * i], system.b[2 * i + 1] = normal, tangential
+        system.size[2 * i], system.size[2 * i + 1] = size_N, size_T
 
 
 @kernel
-def _fill_worth(work, m):
-    """The normal force that each contact's own terms make, into `work.worth`: the scale of its rounding, if they cancel."""
+def _pose(model, closed, m, system):
+    """G, b and the scales of their rounding."""
+    fill_delassus(closed, m, system.inverse, system.G)
+    gap_accelerations(model, closed, m, system)
     for i in range(m):
-        own = work.G[2 * i, 2 * i]
-        work.worth[i] = work.size[2 * i] / own if own > 0.0 else 0.0
+        own = system.G[2 * i, 2 * i]
+        system.normal_scale[i] = system.size[2 * i] / own if own > 0.0 else 0.0
 
 
 @hot_kernel
-def row_terms(work, m, rows, row):
+def row_terms(system, drag, m, rows, row):
     """The sum of the magnitudes of its terms: the scale of its rounding.
 
     What another contact passes on has the rounding of that one's terms, even where these cancel and it passes on nothing.
     """
-    total = work.size[row]
+    total = system.size[row]
     for j in range(rows):
-        total += abs(work.G[row, j] * work.force[j])
+        total += abs(system.G[row, j] * system.force[j])
     for i in range(m):
         if i != row // 2:
-            total += (abs(work.G[row, 2 * i]) + abs(work.drag[i] * work.G[row, 2 * i + 1])) * work.worth[i]
+            total += (abs(system.G[row, 2 * i]) + abs(drag[i] * system.G[row, 2 * i + 1])) * system.normal_scale[i]
     return total
 
 
 @kernel
-def accelerate(model, closed, m, work, out_a):
-    """u' = M⁻¹ (h + W lambda) from `work.h` and `work.force`; 0 where dry friction holds."""
+def accelerate(model, closed, m, system, out_a):
+    """u' = M⁻¹ (h + W lambda); 0 where dry friction holds."""
     for j in range(len(out_a)):
-        out_a[j] = own_acceleration(model, work, j)
-    apply(closed, m, work.force, work.inverse, out_a)
+        out_a[j] = own_acceleration(model, system, j)
+    apply(closed, m, system.force, system.inverse, out_a)
 
 
 @kernel
-def solve_mode(model, closed, m, mode, lenience, work):
-    """Forces of the first m contacts in their decided modes; `work.h`, `work.inverse` are given.
+def solve_mode(model, closed, m, mode, lenience, system, modes):
+    """Forces of the first m contacts in their decided modes into `system.force`; `system.h`, `system.inverse` are given.
 
-    `lenience`: what decides whether forces are unique is so many times `RANK`. Fills `work.force`, `work.b`, `work.size`,
-    `work.G`; True if the forces are unique.
+    Fills the rest of `system`, `size` with the terms of the forces found; True if the forces are unique. `lenience`: what
+    decides that is so many times `RANK`.
     """
-    fill_delassus(closed, m, work)
-    gap_accelerations(model, closed, m, work, work.b, work.size)
-    _fill_worth(work, m)
+    _pose(model, closed, m, system)
     n = m
     for i in range(m):
-        state = mode[closed.ids[i]]
-        friction = model.laws[model.contacts[closed.ids[i]].group].friction
-        work.tangent[i] = -1
-        work.width[i] = friction
-        work.drag[i] = 0.0 if state == STICK else friction * state
-        work.scale[i] = unit_scale(work.G[2 * i, 2 * i])
+        state, friction = mode[closed.ids[i]], law_of(model, closed.ids[i]).friction
+        modes.unknown[i], modes.friction[i] = -1, friction
+        modes.drag[i] = 0.0 if state == STICK else friction * state
+        modes.scale[i] = unit_scale(system.G[2 * i, 2 * i])
         if state == STICK and friction > 0.0:
-            work.tangent[i] = n
-            work.scale[n] = unit_scale(work.G[2 * i + 1, 2 * i + 1])
+            modes.unknown[i] = n
+            modes.scale[n] = unit_scale(system.G[2 * i + 1, 2 * i + 1])
             n += 1
     for i in range(m):
-        _equation(work, m, 2 * i, i)
-        if work.tangent[i] >= 0:
-            _equation(work, m, 2 * i + 1, work.tangent[i])
-    rank = solve_small(work.A, work.rhs, n, work.scale, work.order, work.x, RANK * lenience)
+        _equation(system, m, 2 * i, i, modes)
+        if modes.unknown[i] >= 0:
+            _equation(system, m, 2 * i + 1, modes.unknown[i], modes)
+    rank = solve_small(modes.A, modes.rhs, n, modes.scale, modes.order, modes.x, RANK * lenience)
     if rank < n:
-        smallest_forces(model, closed, m, n, rank, lenience, work)
+        smallest_forces(model, closed, m, n, rank, lenience, system, modes)
     for i in range(m):
-        work.force[2 * i] = work.x[i]
-        t = work.tangent[i]
-        work.force[2 * i + 1] = work.x[t] if t >= 0 else -work.drag[i] * work.x[i]
+        system.force[2 * i] = modes.x[i]
+        t = modes.unknown[i]
+        system.force[2 * i + 1] = modes.x[t] if t >= 0 else -modes.drag[i] * modes.x[i]
     for row in range(2 * m):
-        work.size[row] = row_terms(work, m, 2 * m, row)
+        system.size[row] = row_terms(system, modes.drag, m, 2 * m, row)
     return rank == n
 
 
 @kernel
-def _equation(work, m, row, line):
+def _equation(system, m, row, line, modes):
     """One row of the equality system: the acceleration of gap `row` vanishes."""
     for j in range(m):
-        work.A[line, j] = work.G[row, 2 * j] - work.drag[j] * work.G[row, 2 * j + 1]
-        if work.tangent[j] >= 0:
-            work.A[line, work.tangent[j]] = work.G[row, 2 * j + 1]
-    work.rhs[line] = -work.b[row]
+        modes.A[line, j] = system.G[row, 2 * j] - modes.drag[j] * system.G[row, 2 * j + 1]
+        if modes.unknown[j] >= 0:
+            modes.A[line, modes.unknown[j]] = system.G[row, 2 * j + 1]
+    modes.rhs[line] = -system.b[row]
 
 
 @kernel
-def decide_modes(model, closed, m, bearings, speed_zero, work, out_grip, out_mode):
-    """Acceleration-level LCP over I_N, the first m closed contacts, and the bearings listed in `work.dry`; is it solved?
+def decide_modes(model, closed, m, bearings, speed_zero, system, problem, out_grip, out_mode):
+    """Acceleration-level LCP over I_N, the first m closed contacts, and `problem.bearing[:bearings]`; is it solved?
 
-    Contacts whose |g_T_dot| is below `speed_zero` may stick; the others slide as they do. Sets modes and grips, fills
-    `work.force`, `work.inverse` and adds to `work.h` the dry friction of the bearings that begin to move. False: no
-    finite force keeps the bodies apart (Painlevé's paradox, if a contact slides).
+    Contacts whose |g_T_dot| is below `speed_zero` may stick; the others slide as they do. Sets modes and grips, fills `system`
+    and adds to `system.h` the dry friction of the bearings that begin to move. False: no finite force keeps the bodies apart
+    (Painlevé's paradox, if a contact slides).
     """
     for i in range(len(model.coordinates)):
-        work.inverse[i] = inverse_mass(model.coordinates[i])
-    fill_delassus(closed, m, work)
-    fill_bearings(closed, m, bearings, work)
-    gap_accelerations(model, closed, m, work, work.b, work.size)
-    _fill_worth(work, m)
-    elements = _elements(model, closed, m, bearings, speed_zero, work)
-    _free_bearings(work, m, bearings)
-    rows = 2 * m + bearings
-    reverse_directions(work, m, rows, elements, work.b)
-    fill_matrix(work, m, elements)
-    _load(work, m, elements, bearings)
-    fill_rhs(work, m, elements, work.loaded)
-    pressed = press_unloaded(model, closed, m, work)
-    note_posed(work, m, elements, bearings, Level.ACCELERATION)
-    rung = solve_contacts(work, m, elements)
-    if rung == Solver.FAILED:
-        restore_directions(work, rows, work.b)
+        system.inverse[i] = inverse_mass(model.coordinates[i])
+    _pose(model, closed, m, system)
+    fill_bearings(closed, m, problem.bearing, bearings, system.inverse, system.G)
+    for p in range(bearings):
+        i, row = problem.bearing[p], 2 * m + p
+        system.b[row] = system.h[i] * system.inverse[i]
+        system.size[row] = abs(system.b[row])
+    elements = _elements(model, closed, m, bearings, speed_zero, problem)
+    choose_signs(system.G, system.b, m, 2 * m + bearings, elements, problem)
+    fill_matrix(system.G, m, elements, problem)
+    _load(system, m, elements, bearings, problem)
+    fill_rhs(problem.loaded, m, elements, problem)
+    pressed = press_unloaded(model, closed, m, system, problem)
+    solver = solve_contacts(m, elements, bearings, Level.ACCELERATION, problem)
+    if solver == Solver.FAILED:
         return False
     if pressed:
-        fill_rhs(work, m, elements, work.loaded)
-        keep_basis(work, m, elements, rung)
-    read_forces(work, m, elements, work.force)
+        keep_basis(problem.loaded, m, elements, solver, problem)
+    read_forces(m, elements, problem, system.force)
     for i in range(m):
-        if work.x[i] > 0.0 and is_paradox(work, m, i):
-            restore_directions(work, rows, work.b)
+        if problem.x[i] > 0.0 and _slides_into_jam(system, m, i, problem):
             return False
     for i in range(m):
-        out_mode[closed.ids[i]] = _mode_of(closed, i, m, elements, bearings, work)
-    restore_directions(work, rows, work.b)
+        out_mode[closed.ids[i]] = _mode_of(closed, i, m, elements, bearings, system, problem)
     for i in range(m):
         if out_mode[closed.ids[i]] == OPEN:
-            work.force[2 * i], work.force[2 * i + 1] = 0.0, 0.0
-    _decide_grips(model, m, bearings, work, out_grip)
+            system.force[2 * i], system.force[2 * i + 1] = 0.0, 0.0
+    _decide_grips(model, m, bearings, problem, system, out_grip)
     return True
 
 
 @kernel
-def _elements(model, closed, m, bearings, speed_zero, work):
+def _elements(model, closed, m, bearings, speed_zero, problem):
     """The contacts that may stick, then the bearings; returns how many."""
     elements = 0
     for i in range(m):
-        friction = model.laws[model.contacts[closed.ids[i]].group].friction
-        slip = closed.kin[i].gT_dot
-        work.tangent[i] = -1
-        work.drag[i] = friction if slip > 0.0 else -friction
+        friction, slip = law_of(model, closed.ids[i]).friction, closed.kin[i].gT_dot
+        problem.element[i] = -1
+        problem.drag[i] = friction if slip > 0.0 else -friction
         if friction > 0.0 and abs(slip) <= speed_zero:
-            work.tangent[i], work.drag[i] = elements, friction
-            elements = add_element(work, i, elements, (2.0 * friction, 0.0, 0.0))
+            problem.element[i], problem.drag[i] = elements, friction
+            elements = add_element(problem, i, elements, (2.0 * friction, 0.0, 0.0))
     for p in range(bearings):
-        dry = model.coordinates[work.dry[p]].coulomb
-        elements = add_element(work, m + p, elements, (0.0, 2.0 * dry, -dry))
+        dry = model.coordinates[problem.bearing[p]].coulomb
+        elements = add_element(problem, m + p, elements, (0.0, 2.0 * dry, -dry))
     return elements
 
 
 @kernel
-def _free_bearings(work, m, bearings):
-    """The accelerations of the bearings without friction and contact forces into `b`, their magnitudes into `size`."""
-    for p in range(bearings):
-        i = work.dry[p]
-        work.b[2 * m + p] = work.h[i] * work.inverse[i]
-        work.size[2 * m + p] = abs(work.b[2 * m + p])
-
-
-@kernel
-def _load(work, m, elements, bearings):
-    """Accelerations without contact forces, bearings at the lower end of their friction, into `loaded`."""
+def _load(system, m, elements, bearings, problem):
+    """Accelerations without contact forces, bearings at the lower end of their friction, into `problem.loaded`."""
     for row in range(2 * m + bearings):
-        work.loaded[row] = work.b[row]
+        problem.loaded[row] = system.b[row]
         for p in range(bearings):
             # The elements of the bearings are the last ones, in order.
-            work.loaded[row] += work.G[row, 2 * m + p] * work.shift[elements - bearings + p]
+            force = problem.friction_sign[2 * m + p] * problem.shift[elements - bearings + p]
+            problem.loaded[row] += system.G[row, 2 * m + p] * force
 
 
 @kernel
-def _row_acceleration(work, rows, row):
+def _slides_into_jam(system, m, i, problem):
+    return problem.element[i] < 0 and jams(system.G, problem.drag[i], m, i)
+
+
+@kernel
+def _row_acceleration(system, rows, row):
     """g'' of row `row` under the forces just found."""
-    total = work.b[row]
+    total = system.b[row]
     for j in range(rows):
-        total += work.G[row, j] * work.force[j]
+        total += system.G[row, j] * system.force[j]
     return total
 
 
 @kernel
-def _mode_of(closed, i, m, elements, bearings, work):
+def _mode_of(closed, i, m, elements, bearings, system, problem):
     """The mode of contact i after the LCP.
 
     It slides only one way if the LCP has its friction at that end of the cone: where contacts are redundant, the slip of one
     whose friction is at the other end is what the LCP may miss.
     """
-    rows = 2 * m + bearings
-    if work.x[i] <= 0.0 and _row_acceleration(work, rows, 2 * i) > ACCELERATION_ROUNDING * row_terms(work, m, rows, 2 * i):
+    N, T, rows, drag = 2 * i, 2 * i + 1, 2 * m + bearings, problem.drag
+    pressed, e = problem.x[i] > 0.0, problem.element[i]
+    if not pressed and _row_acceleration(system, rows, N) > ACCELERATION_ROUNDING * row_terms(system, drag, m, rows, N):
         return OPEN
-    if work.tangent[i] < 0:
-        if work.x[i] <= 0.0 and is_paradox(work, m, i):
+    if e < 0:
+        if not pressed and _slides_into_jam(system, m, i, problem):
             return OPEN  # the least force would jam it
         return BACKWARD if closed.kin[i].gT_dot < 0.0 else FORWARD
-    slip = _row_acceleration(work, rows, 2 * i + 1)
+    slip = problem.friction_sign[T] * _row_acceleration(system, rows, T)  # as the problem has it
     # lambda_T is the difference of terms as large as the friction cone.
-    terms = abs(work.force[2 * i + 1]) + work.drag[i] * work.force[2 * i]
-    size = ACCELERATION_ROUNDING * (row_terms(work, m, rows, 2 * i + 1) + work.G[2 * i + 1, 2 * i + 1] * terms)
-    e = work.tangent[i]
-    is_reversed = work.hand[2 * i + 1] < 0.0
-    if slip > size and work.x[m + e] == 0.0:
+    terms = abs(system.force[T]) + drag[i] * system.force[N]
+    size = ACCELERATION_ROUNDING * (row_terms(system, drag, m, rows, T) + system.G[T, T] * terms)
+    is_reversed = problem.friction_sign[T] < 0.0
+    if slip > size and problem.x[m + e] == 0.0:
         return BACKWARD if is_reversed else FORWARD
-    if slip < -size and work.x[m + elements + e] > 0.0:
+    if slip < -size and problem.x[m + elements + e] > 0.0:
         return FORWARD if is_reversed else BACKWARD
     return STICK
 
 
 @kernel
-def _decide_grips(model, m, bearings, work, out_grip):
+def _decide_grips(model, m, bearings, problem, system, out_grip):
     """The grips of the bearings that stood; those held get no inverse mass, those that begin to move their friction."""
     rows = 2 * m + bearings
     for p in range(bearings):
-        i, row = work.dry[p], 2 * m + p
-        moves = _row_acceleration(work, rows, row)
-        terms = row_terms(work, m, rows, row) + work.inverse[i] * model.coordinates[i].coulomb
+        i, row = problem.bearing[p], 2 * m + p
+        moves = _row_acceleration(system, rows, row)
+        terms = row_terms(system, problem.drag, m, rows, row) + system.inverse[i] * model.coordinates[i].coulomb
         if abs(moves) > ACCELERATION_ROUNDING * terms:
             out_grip[i] = FORWARD if moves > 0.0 else BACKWARD
-            work.h[i] -= out_grip[i] * model.coordinates[i].coulomb
+            system.h[i] -= out_grip[i] * model.coordinates[i].coulomb
     for p in range(bearings):
-        if out_grip[work.dry[p]] == STICK:
-            work.inverse[work.dry[p]] = 0.0
+        if out_grip[problem.bearing[p]] == STICK:
+            system.inverse[problem.bearing[p]] = 0.0

@@ -1,17 +1,28 @@
-"""How is a contact problem solved, and what if the first method fails?
+"""Which forces do contacts with Coulomb friction bear, and how is the problem for them solved?
 
-Rung after rung: Lemke's method on the form of coulomb.py; on the copositive form, which always has a solution for
-impacts (Stewart & Trinkle 1996; Anitescu & Potra 1997); Lemke's method on other paths; enumeration of the modes of
-small sets. What solves the problem is checked against the first form. Where many contacts are redundant their loads are
-rounding errors that may contradict each other: then an end of Lemke's method is taken that misses by no more than a billionth
-of the load that drives the problem. If nothing helps, the caller stops and keeps the problem.
+Every friction force lies in an interval from c - L x_N to c - L x_N + l x_N + l_0, where x_N is the normal force of its
+contact: L = mu, l = 2 mu, c = l_0 = 0 for a contact at the acceleration level and in the compression; c = -T, l_0 = 2 T for a
+bearing with dry friction T; the laws of the expansion are in impact.py. With x_+ the distance from the lower end, the law turns
+into complementarity with a slip measure (docs/theory/method.md 2.5, 2.6):
+
+    [ y_N ]   [ G_NN - G_NT L   G_NT   0 ] [ x_N  ]
+    [ y_+ ] = [ G_TN - G_TT L   G_TT   1 ] [ x_+  ] + b
+    [ x_- ]   [ l                -1    0 ] [ y_-  ]
+
+For contacts known to slide L is mu times the direction of slip, and they have no element. `fill_matrix` and `fill_rhs` pose it,
+`solve_contacts` solves it, `read_forces` gives the forces.
 """
 
 from __future__ import annotations
 
-from watchsim.dynamics.delassus import size_class, unit_scale
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
 from watchsim.dynamics.lcp import (
     LcpOutcome,
+    LcpWork,
     Solver,
     is_solution,
     lemke_checked,
@@ -21,149 +32,184 @@ from watchsim.dynamics.lcp import (
     solves,
     unscale,
 )
-from watchsim.jit import kernel
+from watchsim.dynamics.redundant import unit_scale
+from watchsim.jit import by_reference, kernel
+from watchsim.model import blank
 from watchsim.tolerances import ACCELERATION_ROUNDING, LCP_ROUGH, LCP_ROUNDING, NO_HAND, NUDGE, PAINLEVE
 
-# What do the three complementarity problems with Coulomb friction have in common?
-#
-# Their matrix. Every friction force lies in an interval from c - L x_N to c - L x_N + l x_N + l_0, where x_N is the normal
-# force of its contact: L = mu, l = 2 mu, c = l_0 = 0 for a contact at the acceleration level and in the compression; c = -T,
-# l_0 = 2 T for a bearing with dry friction T; the laws of the expansion are in expansion_friction.py. With x_+ the distance
-# from
-# the lower end, the law turns into complementarity with a slip measure (docs/theory/method.md 2.5, 2.6):
-#
-#     [ y_N ]   [ G_NN - G_NT L   G_NT   0 ] [ x_N  ]
-#     [ y_+ ] = [ G_TN - G_TT L   G_TT   1 ] [ x_+  ] + b
-#     [ x_- ]   [ l                -1    0 ] [ y_-  ]
-#
-# For contacts known to slide L is mu times the direction of slip, and they have no element.
+Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+LARGEST = (1, 2, 4, 8, 16)  # unknowns of the problems counted together; one more place for larger ones
+PATHS = 8  # other ones that Lemke tries
+MODES = 50000  # sets of modes tried at most: some tenths of a second
 
 
 @kernel
-def add_element(work, block, element, interval):
+def law_of(model, k):
+    """Friction, restitution and their kin of contact k."""
+    return model.laws[model.contacts[k].group]
+
+
+class LastProblem:
+    """The last problem: what it was about, and how Lemke's method ended."""
+
+    contacts: int
+    elements: int
+    bearings: int
+    level: int  # a Level
+    lemke: int  # an LcpOutcome
+
+
+class FrictionProblem(NamedTuple):
+    """The complementarity problem of the closed contacts, and of the bearings that dry friction might hold.
+
+    A block is a contact or, after the contacts, a bearing; an element is a bounded force: the friction of one block. A force is
+    one of N at the level of accelerations, an impulse of N·s at an impact.
+    """
+
+    lcp: LcpWork
+    last: LastProblem
+    solvers: Integers  # problems solved since last counted, by `Solver`; the last one counts those without a solution
+    sizes: Integers  # the same problems by their number of unknowns, see `LARGEST`
+    bearing: Integers  # (n,) coordinate of each bearing that might hold
+    drag: Array  # (room,) friction per normal force at the lower end of the interval
+    element: Integers  # (room,) of each contact, -1: none
+    block: Integers  # (blocks,) by element
+    width: Array  # (blocks,) length of an element's interval per normal force
+    span: Array  # (blocks,) constant part of its length
+    shift: Array  # (blocks,) constant part of its lower end
+    friction_sign: Array  # (rows of G,) -1 where the problem has a direction of friction the other way round, else 1
+    unit: Array  # (blocks,) scale that gives G a unit diagonal
+    loaded: Array  # (rows of G,) m/s²: of the gaps without contact forces, bearings at the lower end of their friction
+    A: Array  # the problem y = A x + rhs, in units that give G a unit diagonal
+    rhs: Array
+    x: Array
+    B: Array  # the same problem in its copositive form
+    other_rhs: Array
+    other_x: Array
+
+
+FrictionProblemRef = by_reference(FrictionProblem, __name__)
+
+
+def friction_problem(room: int, coordinates: int, lcp: LcpWork) -> FrictionProblem:
+    """For `room` closed contacts and as many bearings as coordinates; `lcp` is room for `problem_size` unknowns."""
+    rows, blocks, side = 2 * room + coordinates, room + coordinates, problem_size(room, coordinates)
+    lengths = {"drag": room, "width": blocks, "span": blocks, "shift": blocks, "unit": blocks, "loaded": rows}
+    lengths |= dict.fromkeys(("rhs", "x", "other_rhs", "other_x"), side)
+    counts = {"solvers": len(Solver), "sizes": len(LARGEST) + 1, "bearing": coordinates, "element": room, "block": blocks}
+    parts: dict[str, Any] = {name: np.zeros(length) for name, length in lengths.items()}
+    parts |= {name: np.zeros(length, np.int64) for name, length in counts.items()}
+    parts |= {name: np.zeros((side, side)) for name in ("A", "B")}
+    return FrictionProblem(lcp=lcp, last=blank(LastProblem), friction_sign=np.ones(rows), **parts)
+
+
+def problem_size(room: int, coordinates: int) -> int:
+    """The most unknowns of a problem, in its copositive form."""
+    return 4 * room + 3 * coordinates
+
+
+# The problem is posed.
+
+
+@kernel
+def add_element(problem, block, element, interval):
     """Element number `element` belongs to `block`; interval: (width, span, shift). Returns the next number."""
-    work.block[element] = block
-    work.width[element], work.span[element], work.shift[element] = interval
+    problem.block[element] = block
+    problem.width[element], problem.span[element], problem.shift[element] = interval
     return element + 1
 
 
 @kernel
-def element_row(work, m, element):
+def element_row(problem, m, element):
     """Row of G of an element."""
-    block = work.block[element]
+    block = problem.block[element]
     return 2 * block + 1 if block < m else m + block
 
 
 @kernel
-def _fill_units(work, m, elements):
-    for i in range(m):
-        work.unit[i] = unit_scale(max(work.G[2 * i, 2 * i], work.G[2 * i + 1, 2 * i + 1]))
+def choose_signs(G, slip, m, rows, elements, problem):
+    """Take each direction of friction such that what it does without friction, `slip` by row, is positive.
+
+    The problem treats the two ends of a cone differently. Where friction leaves more than one solution Lemke's method would end
+    in another one if a direction were reversed, and a mechanism in a mirror would move otherwise. Where nothing slips what a
+    normal force does decides. Both change sign with the direction, and neither depends on where the drawing came from.
+    """
+    sign, largest = problem.friction_sign, 0.0
     for e in range(elements):
-        block = work.block[e]
-        if block >= m:
-            work.unit[block] = unit_scale(work.G[m + block, m + block])
+        largest = max(largest, _cost(G, slip, element_row(problem, m, e)))
+    for row in range(rows):
+        sign[row] = 1.0
+    for e in range(elements):
+        row, block = element_row(problem, m, e), problem.block[e]
+        direction = slip[row]
+        if _cost(G, slip, row) <= NO_HAND * NO_HAND * largest and block < m:
+            direction = G[row, 2 * block]
+        if direction < 0.0:
+            sign[row] = -1.0
 
 
 @kernel
-def fill_matrix(work, m, elements):
-    """The matrix above in unit-diagonal scaling, size m + 2 elements; needs G, drag and the elements. Fills `unit` too."""
+def _cost(G, slip, row):
+    """What the row alone would cost to stop: the same in all units, and in a mirror."""
+    return slip[row] * slip[row] / G[row, row] if G[row, row] > 0.0 else 0.0
+
+
+@kernel
+def fill_matrix(G, m, elements, problem):
+    """The matrix above into `problem.A`, scaled by `problem.unit`; returns its size, m + 2 elements."""
+    A, unit, block, sign = problem.A, problem.unit, problem.block, problem.friction_sign
     n = m + 2 * elements
     for i in range(n):
         for j in range(n):
-            work.A[i, j] = 0.0
-    _fill_units(work, m, elements)
+            A[i, j] = 0.0
+    for i in range(m):
+        unit[i] = unit_scale(max(G[2 * i, 2 * i], G[2 * i + 1, 2 * i + 1]))
+    for e in range(elements):
+        if block[e] >= m:
+            unit[block[e]] = unit_scale(G[m + block[e], m + block[e]])
     for line in range(m + elements):
         e = line - m
-        row = 2 * line if e < 0 else element_row(work, m, e)
-        unit = work.unit[line if e < 0 else work.block[e]]
+        row = 2 * line if e < 0 else element_row(problem, m, e)
+        own = unit[line if e < 0 else block[e]]
         for j in range(m):
-            work.A[line, j] = unit * work.unit[j] * (work.G[row, 2 * j] - work.drag[j] * work.G[row, 2 * j + 1])
+            N, T = sign[row] * G[row, 2 * j], sign[row] * sign[2 * j + 1] * G[row, 2 * j + 1]
+            A[line, j] = own * unit[j] * (N - problem.drag[j] * T)
         for f in range(elements):
-            work.A[line, m + f] = unit * work.unit[work.block[f]] * work.G[row, element_row(work, m, f)]
+            column = element_row(problem, m, f)
+            A[line, m + f] = own * unit[block[f]] * (sign[row] * sign[column] * G[row, column])
     for e in range(elements):
-        work.A[m + e, m + elements + e] = 1.0
-        work.A[m + elements + e, m + e] = -1.0
-        if work.block[e] < m:
-            work.A[m + elements + e, work.block[e]] = work.width[e]
+        A[m + e, m + elements + e] = 1.0
+        A[m + elements + e, m + e] = -1.0
+        if block[e] < m:
+            A[m + elements + e, block[e]] = problem.width[e]
     return n
 
 
 @kernel
-def fill_rhs(work, m, elements, b):
+def fill_rhs(b, m, elements, problem):
     """Right-hand side from the rows `b`: accelerations or velocities with each force at the constant part of its lower end."""
     for i in range(m):
-        work.rhs[i] = work.unit[i] * b[2 * i]
+        problem.rhs[i] = problem.unit[i] * b[2 * i]
     for e in range(elements):
-        unit = work.unit[work.block[e]]
-        work.rhs[m + e] = unit * b[element_row(work, m, e)]
-        work.rhs[m + elements + e] = work.span[e] / unit
+        unit, row = problem.unit[problem.block[e]], element_row(problem, m, e)
+        problem.rhs[m + e] = unit * (problem.friction_sign[row] * b[row])
+        problem.rhs[m + elements + e] = problem.span[e] / unit
 
 
 @kernel
-def read_forces(work, m, elements, out_force):
-    """Forces by row of G from the solution `work.x` of the scaled problem."""
+def read_forces(m, elements, problem, out_force):
+    """Forces by row of G from the solution `problem.x`."""
     for i in range(m):
-        normal = work.unit[i] * work.x[i]
-        out_force[2 * i], out_force[2 * i + 1] = normal, -work.drag[i] * normal
+        normal = problem.unit[i] * problem.x[i]
+        out_force[2 * i], out_force[2 * i + 1] = normal, -problem.drag[i] * normal
     for e in range(elements):
-        block = work.block[e]
-        above = work.shift[e] + work.unit[block] * work.x[m + e]
-        out_force[element_row(work, m, e)] = above - work.drag[block] * out_force[2 * block] if block < m else above
-
-
-# Which way round are the directions of friction taken, so that a mechanism and its mirror image have the same problem?
-#
-# The complementarity form of friction treats the two ends of the cone differently (coulomb.py). Where friction leaves more than
-# one solution, Lemke's method ends in another one when a direction is reversed: the mechanism in a mirror would move otherwise.
-# So each direction is reversed, for the time of the solution, such that what the contact does without friction is positive: its
-# slip (rate or acceleration), or, if that is zero, what a normal force does to it. Both change sign with the direction, and
-# neither depends on where the drawing came from.
-
-
-@kernel
-def reverse_directions(work, m, rows, elements, slip):
-    """Reverse G and `slip` in the rows of elements whose slip without friction is negative.
-
-    What was reversed is noted in `work.hand` (-1), for `restore_directions`.
-    """
-    largest = 0.0
-    for e in range(elements):
-        row = element_row(work, m, e)
-        largest = max(largest, _share(work, row, slip))
-    for row in range(rows):
-        work.hand[row] = 1.0
-    for e in range(elements):
-        row, block = element_row(work, m, e), work.block[e]
-        direction = slip[row]
-        if _share(work, row, slip) <= NO_HAND * NO_HAND * largest and block < m:
-            direction = work.G[row, 2 * block]
-        if direction < 0.0:
-            work.hand[row] = -1.0
-    _turn(work, rows, slip)
-
-
-@kernel
-def restore_directions(work, rows, slip):
-    """Undo `reverse_directions` in G, `slip` and the forces found."""
-    _turn(work, rows, slip)
-    for row in range(rows):
-        work.force[row] *= work.hand[row]
-
-
-@kernel
-def _share(work, row, slip):
-    """What the row alone would cost to stop: the same in all units, and in a mirror."""
-    return slip[row] * slip[row] / work.G[row, row] if work.G[row, row] > 0.0 else 0.0
-
-
-@kernel
-def _turn(work, rows, slip):
-    for row in range(rows):
-        if work.hand[row] < 0.0:
-            slip[row] = -slip[row]
-            for column in range(rows):
-                work.G[row, column], work.G[column, row] = -work.G[row, column], -work.G[column, row]
-            work.G[row, row] = -work.G[row, row]
+        block, row = problem.block[e], element_row(problem, m, e)
+        above = problem.shift[e] + problem.unit[block] * problem.x[m + e]
+        if block < m:
+            above -= problem.drag[block] * out_force[2 * block]
+        out_force[row] = problem.friction_sign[row] * above
 
 
 # Which contacts jam: slide such that a normal force on them pulls their bodies together (Painlevé)?
@@ -172,8 +218,23 @@ def _turn(work, rows, slip):
 
 
 @kernel
-def press_unloaded(model, closed, m, work):
-    """Settle what happens where nothing presses a contact in whose direction of slip it would jam; True if any is pressed.
+def jams(G, drag, m, i, near=PAINLEVE):
+    """True if contact i, all by itself, slides such that a normal force on it pulls its bodies together, or nearly so.
+
+    `drag`: its friction per normal force, against its slip. `near`: the share of G_N by which the force may still part them.
+    """
+    own = G[2 * i, 2 * i]
+    if own == 0.0 or own - drag * G[2 * i, 2 * i + 1] > near * own:
+        return False
+    for j in range(m):
+        if j != i and (G[2 * i, 2 * j] != 0.0 or G[2 * i, 2 * j + 1] != 0.0 or G[2 * i + 1, 2 * j] != 0.0):
+            return False
+    return True
+
+
+@kernel
+def press_unloaded(model, closed, m, system, problem):
+    """Settle what happens where nothing presses a contact that would jam as it slides; True if any is pressed.
 
     There the laws have more than one solution, and the rounding of a load that is zero would choose between them. Without
     slip the contact holds, as it would under any load however small: it is pressed by next to nothing. With slip it goes
@@ -181,187 +242,180 @@ def press_unloaded(model, closed, m, work):
     """
     pressed = False
     for i in range(m):
-        if not _jams(work, m, i, PAINLEVE) or not _is_unloaded(model, closed, i, work):
+        drag, slip = problem.friction_sign[2 * i + 1] * problem.drag[i], abs(problem.loaded[2 * i + 1])
+        if not jams(system.G, drag, m, i) or not _is_unloaded(model, closed, i, system, problem.loaded[2 * i]):
             continue
-        if work.tangent[i] < 0:
-            work.rhs[i] = max(0.0, work.rhs[i])
-        elif work.loaded[2 * i + 1] != 0.0:
-            work.rhs[i] -= NUDGE * abs(work.loaded[2 * i + 1]) * work.unit[i]
+        if problem.element[i] < 0:
+            problem.rhs[i] = max(0.0, problem.rhs[i])
+        elif slip != 0.0:
+            problem.rhs[i] -= NUDGE * slip * problem.unit[i]
             pressed = True
     return pressed
 
 
 @kernel
-def _is_unloaded(model, closed, i, work):
-    """True if the gap of contact i does not accelerate without its force, but for rounding, that of its lever arms among it."""
+def _is_unloaded(model, closed, i, system, loaded):
+    """True if gap i accelerates without its force (`loaded`, m/s²) by no more than rounding, also of its lever arms."""
     terms = closed.kin[i].bar_size
     for k in range(closed.slots[i]):
         j = closed.coord[i, k]
         arm = abs(closed.w_N[i, k]) + abs(closed.w_T[i, k])
-        terms += arm * (abs(work.h[j]) + model.coordinates[j].load) * work.inverse[j]
-    return abs(work.loaded[2 * i]) <= ACCELERATION_ROUNDING * terms
+        terms += arm * (abs(system.h[j]) + model.coordinates[j].load) * system.inverse[j]
+    return abs(loaded) <= ACCELERATION_ROUNDING * terms
+
+
+# The problem is solved, if not by the first method then by another one.
 
 
 @kernel
-def is_paradox(work, m, i, near=PAINLEVE):
-    """True if contact i, all by itself, slides such that a normal force on it pulls its bodies together, or nearly so.
+def solve_contacts(m, elements, bearings, level, problem):
+    """Solve `problem.A`, `problem.rhs` into `problem.x`; returns the `Solver` that did, FAILED if none. `level`: a `Level`.
 
-    Works with the G and drag of `solve_mode` and `decide_modes`. `near`: the share of G_N by which it may still part them.
+    One after another: Lemke's method on the form above; on the copositive form, which always has a solution for impacts
+    (Stewart & Trinkle 1996; Anitescu & Potra 1997); Lemke's method on other paths; enumeration of the modes of small sets. What
+    solves the problem is checked against the first form. Where many contacts are redundant their loads are rounding errors that
+    may contradict each other: then an end of Lemke's method is taken that misses by no more than a billionth of the load that
+    drives the problem. If nothing helps, the caller stops and keeps the problem.
     """
-    return work.tangent[i] < 0 and _jams(work, m, i, near)
-
-
-@kernel
-def _jams(work, m, i, near):
-    """The same of a contact without slip, in the direction in which it would begin to slide."""
-    own = work.G[2 * i, 2 * i]
-    if own == 0.0:
-        return False
-    if own - work.drag[i] * work.G[2 * i, 2 * i + 1] > near * own:
-        return False
-    for j in range(m):
-        if j != i and (work.G[2 * i, 2 * j] != 0.0 or work.G[2 * i, 2 * j + 1] != 0.0 or work.G[2 * i + 1, 2 * j] != 0.0):
-            return False
-    return True
-
-
-# How is a contact problem solved, and what if the first method fails?
-
-PATHS = 8  # other ones that Lemke tries
-MODES = 50000  # sets of modes tried at most: some tenths of a second
-
-
-@kernel
-def solve_contacts(work, m, elements):
-    """Solve the problem in `work.A`, `work.rhs` into `work.x`; returns the rung that did, FAILED if none."""
-    n = m + 2 * elements
-    outcome = lemke_checked(work.A, work.rhs, n, work.lcp, work.x)
-    work.posed.lemke = outcome
-    rung = Solver.LEMKE
+    last, n = problem.last, m + 2 * elements
+    last.contacts, last.elements, last.bearings, last.level = m, elements, bearings, level
+    outcome = lemke_checked(problem.A, problem.rhs, n, problem.lcp, problem.x)
+    last.lemke = outcome
+    solver = Solver.LEMKE
     if outcome != LcpOutcome.SOLVED:
-        rung = Solver.FAILED
-        if elements > 0 and _solve_copositive(work, m, elements):
-            rung = Solver.COPOSITIVE
-        elif _detour(work, n, False):
-            rung = Solver.DETOUR
-        elif enumerate_modes(work, m, elements):
-            rung = Solver.ENUMERATED
-        elif _detour(work, n, True):
-            rung = Solver.INEXACT
-    work.rungs[rung.value] += 1
-    work.sizes[size_class(n)] += 1
-    return rung
+        solver = Solver.FAILED
+        if elements > 0 and _solve_copositive(m, elements, problem):
+            solver = Solver.COPOSITIVE
+        elif _detour(n, False, problem):
+            solver = Solver.DETOUR
+        elif enumerate_modes(m, elements, problem):
+            solver = Solver.ENUMERATED
+        elif _detour(n, True, problem):
+            solver = Solver.INEXACT
+    problem.solvers[solver.value] += 1
+    problem.sizes[size_class(n)] += 1
+    return solver
 
 
 @kernel
-def _detour(work, n, rough):
-    """True if Lemke's method reaches a solution from another start, then in `work.x`: ties and rounding fall otherwise.
+def size_class(n):
+    """The place in `sizes` for a problem of n unknowns."""
+    place = 0
+    while place < len(LARGEST) and n > LARGEST[place]:
+        place += 1
+    return place
+
+
+@kernel
+def keep_basis(b, m, elements, solver, problem):
+    """Take back a small change of `problem.rhs`: the solution for the rows `b` with the same active unknowns, if it is one.
+
+    `solver`: the one that solved the problem; only Lemke's method on its first path leaves what is active.
+    """
+    n, lcp = m + 2 * elements, problem.lcp
+    fill_rhs(b, m, elements, problem)
+    if solver != Solver.LEMKE:
+        for i in range(n):
+            lcp.is_active[i] = 1 if problem.x[i] > 0.0 else 0
+    magnitude = scale(problem.A, problem.rhs, n, lcp)
+    solve_active(n, lcp)
+    if is_solution(n, lcp):
+        unscale(n, magnitude, lcp, problem.x)
+
+
+@kernel
+def _detour(n, rough, problem):
+    """True if Lemke's method reaches a solution from another start, then in `problem.x`: ties and rounding fall otherwise.
 
     `rough`: the usual start counts, too, and so does what misses the conditions by next to nothing.
     """
     for path in range(0 if rough else 1, PATHS + 1):
-        outcome = lemke_on_path(work.A, work.rhs, n, path, work.lcp, work.x)
-        if outcome == LcpOutcome.SOLVED or (rough and outcome == LcpOutcome.INEXACT and solves(n, LCP_ROUGH, work.lcp)):
+        outcome = lemke_on_path(problem.A, problem.rhs, n, path, problem.lcp, problem.x)
+        if outcome == LcpOutcome.SOLVED or (rough and outcome == LcpOutcome.INEXACT and solves(n, LCP_ROUGH, problem.lcp)):
             return True
     return False
 
 
 @kernel
-def keep_basis(work, m, elements, rung):
-    """After a small change of `work.rhs`: the solution with the same active unknowns, if it still is one.
-
-    `rung`: the one that solved the problem; only Lemke's method on its first path leaves what is active.
-    """
-    n = m + 2 * elements
-    if rung != Solver.LEMKE:
-        for i in range(n):
-            work.lcp.is_active[i] = 1 if work.x[i] > 0.0 else 0
-    magnitude = scale(work.A, work.rhs, n, work.lcp)
-    solve_active(n, work.lcp)
-    if is_solution(n, work.lcp):
-        unscale(n, magnitude, work.lcp, work.x)
-
-
-@kernel
-def fill_copositive(work, m, elements):
-    """The problem in `A`, `rhs` with unknowns x_N, beta_+, beta_-, sigma into `B`, `other_rhs`; returns its size.
+def _fill_copositive(m, elements, problem):
+    """The problem with unknowns x_N, beta_+, beta_-, sigma into `problem.B`, `problem.other_rhs`; returns its size.
 
     The friction force is the middle of its interval plus beta_+ - beta_-, beta_+ + beta_- within half the length, sigma the
     speed of slip.
     """
+    A, B, rhs, other_rhs = problem.A, problem.B, problem.rhs, problem.other_rhs
     n = m + 3 * elements
     plus, minus, sigma = m, m + elements, m + 2 * elements
     for i in range(n):
-        work.other_rhs[i] = 0.0
+        other_rhs[i] = 0.0
         for j in range(n):
-            work.B[i, j] = 0.0
+            B[i, j] = 0.0
     for line in range(m + elements):
-        work.other_rhs[line] = work.rhs[line]
+        other_rhs[line] = rhs[line]
         for j in range(m):
-            work.B[line, j] = work.A[line, j]
+            B[line, j] = A[line, j]
         for e in range(elements):
-            effect = work.A[line, m + e]
-            work.B[line, plus + e], work.B[line, minus + e] = effect, -effect
-            work.other_rhs[line] += 0.5 * work.rhs[m + elements + e] * effect
-            if work.block[e] < m:
-                work.B[line, work.block[e]] += 0.5 * work.width[e] * effect
+            effect = A[line, m + e]
+            B[line, plus + e], B[line, minus + e] = effect, -effect
+            other_rhs[line] += 0.5 * rhs[m + elements + e] * effect
+            if problem.block[e] < m:
+                B[line, problem.block[e]] += 0.5 * problem.width[e] * effect
     for e in range(elements):
-        work.other_rhs[minus + e] = -work.other_rhs[plus + e]
+        other_rhs[minus + e] = -other_rhs[plus + e]
         for j in range(n):
-            work.B[minus + e, j] = -work.B[plus + e, j]
-        work.B[plus + e, sigma + e], work.B[minus + e, sigma + e] = 1.0, 1.0
-        work.B[sigma + e, plus + e], work.B[sigma + e, minus + e] = -1.0, -1.0
-        work.other_rhs[sigma + e] = 0.5 * work.rhs[m + elements + e]
-        if work.block[e] < m:
-            work.B[sigma + e, work.block[e]] = 0.5 * work.width[e]
+            B[minus + e, j] = -B[plus + e, j]
+        B[plus + e, sigma + e], B[minus + e, sigma + e] = 1.0, 1.0
+        B[sigma + e, plus + e], B[sigma + e, minus + e] = -1.0, -1.0
+        other_rhs[sigma + e] = 0.5 * rhs[m + elements + e]
+        if problem.block[e] < m:
+            B[sigma + e, problem.block[e]] = 0.5 * problem.width[e]
     return n
 
 
 @kernel
-def _solve_copositive(work, m, elements):
-    """True if the copositive form gives a solution of the first form, then in `work.x`."""
-    n = fill_copositive(work, m, elements)
-    if lemke_checked(work.B, work.other_rhs, n, work.lcp, work.other_x) != LcpOutcome.SOLVED:
+def _solve_copositive(m, elements, problem):
+    """True if the copositive form gives a solution of the first form, then in `problem.x`."""
+    n, rhs, x, other_x = _fill_copositive(m, elements, problem), problem.rhs, problem.x, problem.other_x
+    if lemke_checked(problem.B, problem.other_rhs, n, problem.lcp, other_x) != LcpOutcome.SOLVED:
         return False
     for i in range(m):
-        work.x[i] = work.other_x[i]
+        x[i] = other_x[i]
     for e in range(elements):
-        half = 0.5 * work.rhs[m + elements + e]
-        if work.block[e] < m:
-            half += 0.5 * work.width[e] * work.x[work.block[e]]
-        above = half + work.other_x[m + e] - work.other_x[m + elements + e]
-        work.x[m + e] = above if above > LCP_ROUNDING * half else 0.0
+        half = 0.5 * rhs[m + elements + e]
+        if problem.block[e] < m:
+            half += 0.5 * problem.width[e] * x[problem.block[e]]
+        above = half + other_x[m + e] - other_x[m + elements + e]
+        x[m + e] = above if above > LCP_ROUNDING * half else 0.0
     for e in range(elements):
-        slip = work.rhs[m + e]
+        slip = rhs[m + e]
         for j in range(m + elements):
-            slip += work.A[m + e, j] * work.x[j]
-        work.x[m + elements + e] = max(0.0, -slip)
-    return _is_solved(work, m + 2 * elements)
+            slip += problem.A[m + e, j] * x[j]
+        x[m + elements + e] = max(0.0, -slip)
+    return _is_solved(m + 2 * elements, problem)
 
 
 @kernel
-def _is_solved(work, n):
-    """True if `work.x` solves the first form, rounding errors in the place of zeros forgiven."""
-    magnitude = scale(work.A, work.rhs, n, work.lcp)
+def _is_solved(n, problem):
+    """True if `problem.x` solves the first form, rounding errors in the place of zeros forgiven."""
+    lcp = problem.lcp
+    magnitude = scale(problem.A, problem.rhs, n, lcp)
     for i in range(n):
-        value = work.x[i] / (work.lcp.column_scale[i] * magnitude)
-        work.lcp.trial[i] = value if value > LCP_ROUNDING else 0.0
-    return is_solution(n, work.lcp)
+        value = problem.x[i] / (lcp.column_scale[i] * magnitude)
+        lcp.trial[i] = value if value > LCP_ROUNDING else 0.0
+    return is_solution(n, lcp)
 
 
 @kernel
-def enumerate_modes(work, m, elements):
-    """Try every set of modes (contact pressed or not; friction at one end, within, at the other end); True with `work.x`."""
-    n = m + 2 * elements
-    sets = 1.0
+def enumerate_modes(m, elements, problem):
+    """Try every set of modes (contact pressed or not; friction at one end, within, at the other end); True with `problem.x`."""
+    n, sets, active = m + 2 * elements, 1.0, problem.lcp.is_active
     for _ in range(m):
         sets *= 2.0
     for _ in range(elements):
         sets *= 3.0
     if sets > MODES:
         return False
-    magnitude = scale(work.A, work.rhs, n, work.lcp)
-    active = work.lcp.is_active
+    magnitude = scale(problem.A, problem.rhs, n, problem.lcp)
     for number in range(int(sets)):
         rest = number
         for i in range(m):
@@ -372,8 +426,8 @@ def enumerate_modes(work, m, elements):
             rest //= 3
             active[m + e] = 1 if digit > 0 else 0
             active[m + elements + e] = 1 if digit == 2 else 0
-        solve_active(n, work.lcp)
-        if is_solution(n, work.lcp):
-            unscale(n, magnitude, work.lcp, work.x)
+        solve_active(n, problem.lcp)
+        if is_solution(n, problem.lcp):
+            unscale(n, magnitude, problem.lcp, problem.x)
             return True
     return False

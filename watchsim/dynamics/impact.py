@@ -8,68 +8,103 @@ docs/theory/laws.md).
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
 from watchsim.dynamics.acceleration import gap_accelerations
-from watchsim.dynamics.delassus import apply, contact_velocities, fill_delassus, inverse_mass, note_posed
-from watchsim.dynamics.forces import interval
+from watchsim.dynamics.delassus import apply, contact_velocities, fill_delassus, inverse_mass
 from watchsim.dynamics.friction import (
     add_element,
+    choose_signs,
     element_row,
     fill_matrix,
     fill_rhs,
     keep_basis,
+    law_of,
     read_forces,
-    restore_directions,
-    reverse_directions,
     solve_contacts,
 )
 from watchsim.dynamics.lcp import Level, Solver
-from watchsim.jit import kernel
-from watchsim.tolerances import NUDGE, PAINLEVE, PARALLEL, VELOCITY_ROUNDING
+from watchsim.jit import by_reference, kernel
+from watchsim.model import PG1996, SHIFTED
+from watchsim.tolerances import NO_TANGENTIAL, NUDGE, PAINLEVE, PARALLEL, VELOCITY_ROUNDING
+
+Array = NDArray[np.float64]
+
+
+class ImpactPhases(NamedTuple):
+    """The two phases of an impact; rows N, T of each contact, m/s and N·s."""
+
+    rates: Array  # before the compression
+    impulse: Array  # of the compression, then of both phases
+    more: Array  # of the expansion
+    between: Array  # rates at the start of the expansion, its least impulses included
+    offset: Array  # by contact: tangential impulse whose slip moves the corner of the law pg1996
+
+
+ImpactPhasesRef = by_reference(ImpactPhases, __name__)
+
+
+def impact_phases(room: int) -> ImpactPhases:
+    """For `room` closed contacts."""
+    rates, impulse, more, between = np.zeros((4, 2 * room))
+    return ImpactPhases(rates, impulse, more, between, np.zeros(room))
 
 
 @kernel
-def _law(model, closed, i):
-    return model.laws[model.contacts[closed.ids[i]].group]
+def interval(law, restitution, normal, tangential):
+    """Where the friction impulse of the expansion may lie: (L, l, l_0, c, returned), see friction.py and docs/theory/laws.md.
+
+    From c - L Lambda_NP to c - L Lambda_NP + l Lambda_NP + l_0, where Lambda_NP is what the normal impulse has beyond eps_N
+    times that of the compression. `restitution` is eps_N as used, the impulses are those of the compression; `returned` is the
+    tangential impulse eps_N eps_T Lambda_TC, whose slip pg1996 may offset by nu.
+    """
+    mu, back = law.friction, restitution * normal
+    if law.kind == SHIFTED:
+        # A smaller eps_N (after an energy gain, at an accumulation) takes eps_T with it.
+        share = min(law.tangential, restitution)
+        radius = mu * (restitution - share) * normal
+        return mu, 2.0 * mu, 2.0 * radius, share * tangential - radius, 0.0
+    if law.kind != PG1996:
+        return mu, 2.0 * mu, 2.0 * mu * back, -mu * back, 0.0
+    returned = restitution * law.tangential * tangential
+    least = abs(returned)
+    span = max(0.0, mu * back - least)
+    if normal <= 0.0 or abs(tangential) <= NO_TANGENTIAL * mu * normal:
+        return 0.5 * mu, mu, span, -0.5 * span, returned
+    if tangential > 0.0:
+        return 0.0, mu, span, least, returned
+    return mu, mu, span, -mu * back, returned
 
 
 @kernel
-def _begin(model, closed, m, work):
-    """Coulomb friction within ± mu Lambda_N for every contact that has any; returns the number of elements."""
-    elements = 0
-    for i in range(m):
-        work.drag[i] = _law(model, closed, i).friction
-        work.tangent[i] = -1
-        if work.drag[i] > 0.0:
-            work.tangent[i] = elements
-            elements = add_element(work, i, elements, (2.0 * work.drag[i], 0.0, 0.0))
-    return elements
+def impact(model, closed, m, restitution, jam_speed, system, problem, phases, out_u):
+    """Two-phase impact of the first m closed contacts; `out_u` holds the velocities before and gets those after.
 
-
-@kernel
-def _compress(model, closed, m, u, jam, work):
-    """Impulses of the compression into `work.force`, rates before it into `work.b`. Returns (solved?, elements).
-
-    From here on until `restore_directions` some directions of friction are reversed.
+    `restitution[i]` is eps_N of row i. With `jam_speed` > 0 (m/s) contacts that slide while their gap stands still, to that
+    speed, are jammed: the impulses that stop them are found although nothing approaches. Total impulses are left in
+    `phases.impulse`, rates before the impact in `phases.rates`. True if it is solved; the velocities are changed only then.
     """
     for j in range(len(model.coordinates)):
-        work.inverse[j] = inverse_mass(model.coordinates[j])
-    elements = _begin(model, closed, m, work)
-    fill_delassus(closed, m, work)
-    contact_velocities(closed, m, u, work.b)
-    _drop_rounding(closed, m, u, work.b)
-    reverse_directions(work, m, 2 * m, elements, work.b)
-    raise_friction(m, jam, work)
-    fill_matrix(work, m, elements)
-    fill_rhs(work, m, elements, work.b)
-    nudged = perturb_approach(m, jam, work)
-    nudged = _keep_sliding(m, work) or nudged
-    note_posed(work, m, elements, 0, Level.COMPRESSION)
-    rung = solve_contacts(work, m, elements)
-    if nudged and rung != Solver.FAILED:
-        fill_rhs(work, m, elements, work.b)
-        keep_basis(work, m, elements, rung)
-    read_forces(work, m, elements, work.force)
-    return rung != Solver.FAILED, elements
+        system.inverse[j] = inverse_mass(model.coordinates[j])
+    fill_delassus(closed, m, system.inverse, system.G)
+    contact_velocities(closed, m, out_u, phases.rates)
+    _drop_rounding(closed, m, out_u, phases.rates)
+    elements = _elements(model, closed, m, problem)
+    if not _compress(m, elements, jam_speed, system.G, problem, phases):
+        return False
+    returns = False
+    for i in range(m):
+        returns = returns or (restitution[i] > 0.0 and phases.impulse[2 * i] > 0.0)
+    if returns:
+        if not _expand(model, closed, m, restitution, elements, system.G, problem, phases):
+            return False
+        for row in range(2 * m):
+            phases.impulse[row] += phases.more[row]
+    apply(closed, m, phases.impulse, system.inverse, out_u)
+    return True
 
 
 @kernel
@@ -85,37 +120,66 @@ def _drop_rounding(closed, m, u, out_rates):
 
 
 @kernel
-def raise_friction(m, jam, work):
+def _elements(model, closed, m, problem):
+    """Coulomb friction within ± mu Lambda_N for every contact that has any; returns the number of elements."""
+    elements = 0
+    for i in range(m):
+        problem.drag[i] = law_of(model, closed.ids[i]).friction
+        problem.element[i] = -1
+        if problem.drag[i] > 0.0:
+            problem.element[i] = elements
+            elements = add_element(problem, i, elements, (2.0 * problem.drag[i], 0.0, 0.0))
+    return elements
+
+
+@kernel
+def _compress(m, elements, jam_speed, G, problem, phases):
+    """Impulses of the compression into `phases.impulse`; True if they are found."""
+    choose_signs(G, phases.rates, m, 2 * m, elements, problem)
+    if jam_speed > 0.0:
+        raise_friction(G, m, problem)
+    fill_matrix(G, m, elements, problem)
+    fill_rhs(phases.rates, m, elements, problem)
+    # Where something approaches, a gap that stands still needs no perturbation, even one at exactly zero.
+    perturbed = jam_speed > 0.0 and perturb_approach(phases.rates, m, jam_speed, problem)
+    perturbed = _keep_sliding(G, phases.rates, m, problem) or perturbed
+    solver = solve_contacts(m, elements, 0, Level.COMPRESSION, problem)
+    if perturbed and solver != Solver.FAILED:
+        keep_basis(phases.rates, m, elements, solver, problem)
+    read_forces(m, elements, problem, phases.impulse)
+    return solver != Solver.FAILED
+
+
+@kernel
+def raise_friction(G, m, problem):
     """Let friction grip by as little more as takes contacts that count as jammed past the bound where they are.
 
     They count as jammed shortly before it (`PAINLEVE`), where a force still parts their bodies, by next to nothing.
     """
     for i in range(m):
-        own, both = work.G[2 * i, 2 * i], work.G[2 * i, 2 * i + 1]
-        if jam > 0.0 and work.tangent[i] >= 0 and abs(own - work.drag[i] * both) <= PAINLEVE * own:
-            work.drag[i] = (1.0 + PAINLEVE) * own / both
-            work.width[work.tangent[i]] = 2.0 * work.drag[i]
+        own, both = G[2 * i, 2 * i], problem.friction_sign[2 * i + 1] * G[2 * i, 2 * i + 1]
+        if problem.element[i] >= 0 and abs(own - problem.drag[i] * both) <= PAINLEVE * own:
+            problem.drag[i] = (1.0 + PAINLEVE) * own / both
+            problem.width[problem.element[i]] = 2.0 * problem.drag[i]
 
 
 @kernel
-def perturb_approach(m, jam, work):
-    """Let the contacts that slide at a standstill of their gap (|rate| <= `jam`) approach a little; True if there are any.
+def perturb_approach(rates, m, jam_speed, problem):
+    """Let the contacts that slide at a standstill of their gap (|rate| <= `jam_speed`) approach a little; True if any does.
 
     The impulses of a jam do not vanish with the speed of approach; which contacts carry them is found this way.
     """
     found = False
-    if not jam > 0.0:
-        return found  # where something approaches, a gap that stands still needs no nudge, even one at exactly zero
     for i in range(m):
-        slip = abs(work.b[2 * i + 1])
-        if work.tangent[i] >= 0 and abs(work.b[2 * i]) <= jam and slip > jam:
-            work.rhs[i] -= NUDGE * slip * work.unit[i]
+        slip = abs(rates[2 * i + 1])
+        if problem.element[i] >= 0 and abs(rates[2 * i]) <= jam_speed < slip:
+            problem.rhs[i] -= NUDGE * slip * problem.unit[i]
             found = True
     return found
 
 
 @kernel
-def _keep_sliding(m, work):
+def _keep_sliding(G, rates, m, problem):
     """Let contacts whose slip is a multiple of their gap rate end the compression still sliding a little; True if any does.
 
     Where w_T is parallel to w_N (one rotor or slider against the frame, sliders on parallel axes) slip and approach stop
@@ -123,121 +187,88 @@ def _keep_sliding(m, work):
     """
     found = False
     for i in range(m):
-        e = work.tangent[i]
-        if e >= 0 and is_parallel(work, i):
-            work.rhs[m + e] += NUDGE * work.b[2 * i + 1] * work.unit[i]
+        e, T = problem.element[i], 2 * i + 1
+        if e >= 0 and is_parallel(G, i):
+            problem.rhs[m + e] += NUDGE * (problem.friction_sign[T] * rates[T]) * problem.unit[i]
             found = True
     return found
 
 
 @kernel
-def is_parallel(work, i):
+def is_parallel(G, i):
     """True if the directions of contact i's normal and friction force are parallel to rounding."""
-    N, T, both = work.G[2 * i, 2 * i], work.G[2 * i + 1, 2 * i + 1], work.G[2 * i, 2 * i + 1]
+    N, T, both = G[2 * i, 2 * i], G[2 * i + 1, 2 * i + 1], G[2 * i, 2 * i + 1]
     return both * both > (1.0 - PARALLEL) * N * T > 0.0
 
 
 @kernel
-def _expand(model, closed, m, restitution, elements, work):
-    """Impulses of the expansion into `work.more`; True if they are found.
+def _expand(model, closed, m, restitution, elements, G, problem, phases):
+    """Impulses of the expansion into `phases.more`; True if they are found.
 
     Unknowns: Lambda_NP = Lambda_NE - eps_N Lambda_NC and the distance of Lambda_TE from the lower end of its interval.
     """
+    sign = problem.friction_sign
     for i in range(m):
-        normal, tangential = work.force[2 * i], work.force[2 * i + 1]
-        work.more[2 * i], work.more[2 * i + 1] = restitution[i] * normal, 0.0
-        e = work.tangent[i]
+        N, T, e = 2 * i, 2 * i + 1, problem.element[i]
+        normal, tangential = phases.impulse[N], sign[T] * phases.impulse[T]
+        phases.more[N], phases.more[T], phases.offset[i] = restitution[i] * normal, 0.0, 0.0
         if e >= 0:
-            law = _law(model, closed, i)
+            law = law_of(model, closed.ids[i])
             low, width, span, shift, returned = interval(law, restitution[i], normal, tangential)
-            work.drag[i], work.more[2 * i + 1] = low, shift
-            add_element(work, i, e, (width, span, shift))
-            work.offset[i] = law.nu * returned
-        else:
-            work.offset[i] = 0.0
+            problem.drag[i], phases.more[T], phases.offset[i] = low, sign[T] * shift, sign[T] * (law.nu * returned)
+            add_element(problem, i, e, (width, span, shift))
     for row in range(2 * m):
-        total = work.b[row]
+        total = phases.rates[row]
         for j in range(2 * m):
-            total += work.G[row, j] * (work.force[j] + work.more[j])
-        work.rates[row] = total
+            total += G[row, j] * (phases.impulse[j] + phases.more[j])
+        phases.between[row] = total
     for e in range(elements):
-        row = element_row(work, m, e)
+        row = element_row(problem, m, e)
         for i in range(m):
-            work.rates[row] -= work.G[row, 2 * i + 1] * work.offset[i]
-    fill_matrix(work, m, elements)
-    fill_rhs(work, m, elements, work.rates)
-    work.posed.level = Level.EXPANSION
-    rung = solve_contacts(work, m, elements)
+            phases.between[row] -= G[row, 2 * i + 1] * phases.offset[i]
+    fill_matrix(G, m, elements, problem)
+    fill_rhs(phases.between, m, elements, problem)
+    solver = solve_contacts(m, elements, 0, Level.EXPANSION, problem)
     for i in range(m):
-        extra = work.unit[i] * work.x[i]
-        work.more[2 * i] += extra
-        e = work.tangent[i]
+        N, T, e = 2 * i, 2 * i + 1, problem.element[i]
+        extra = problem.unit[i] * problem.x[i]
+        phases.more[N] += extra
         if e >= 0:
-            work.more[2 * i + 1] += work.unit[i] * work.x[m + e] - work.drag[i] * extra
-    return rung != Solver.FAILED
+            phases.more[T] += sign[T] * (problem.unit[i] * problem.x[m + e] - problem.drag[i] * extra)
+    return solver != Solver.FAILED
 
 
 @kernel
-def impact(model, closed, m, restitution, jam, work, out_u):
-    """Two-phase impact of the first m closed contacts; `out_u` holds the velocities before and gets those after.
+def plastic_impact(model, closed, m, time, u, system, problem, phases):
+    """Impulses of the compression over a time in which the forces `system.h` act, into `phases.impulse`; True if found.
 
-    `restitution[i]` is eps_N of row i. With `jam` > 0 (m/s) contacts that slide while their gap stands still, to that
-    speed, are jammed: the impulses that stop them are found although nothing approaches. Total impulses N, T are left in
-    `work.force`, rates before the impact in `work.b`. True if it is solved; the velocities are changed only then.
+    The compression of the rates that free motion over `time` (s) would lead to (a step of Moreau's scheme at fixed positions).
     """
-    solved, elements = _compress(model, closed, m, out_u, jam, work)
-    if not solved:
-        restore_directions(work, 2 * m, work.b)
-        return False
-    returns = False
-    for i in range(m):
-        if restitution[i] > 0.0 and work.force[2 * i] > 0.0:
-            returns = True
-    if returns:
-        if not _expand(model, closed, m, restitution, elements, work):
-            restore_directions(work, 2 * m, work.b)
-            return False
-        for row in range(2 * m):
-            work.force[row] += work.more[row]
-    restore_directions(work, 2 * m, work.b)
-    apply(closed, m, work.force, work.inverse, out_u)
-    return True
-
-
-@kernel
-def plastic_impact(model, closed, m, time, u, work):
-    """Impulses of the compression over a time in which the forces `work.h` act on `work.inverse`, into `work.force`.
-
-    The compression of the rates that free motion over `time` would lead to (a step of Moreau's scheme at fixed positions).
-    True if they are found.
-    """
-    elements = _begin(model, closed, m, work)
-    fill_delassus(closed, m, work)
-    contact_velocities(closed, m, u, work.b)
-    gap_accelerations(model, closed, m, work, work.loaded, work.size)
+    elements = _elements(model, closed, m, problem)
+    fill_delassus(closed, m, system.inverse, system.G)
+    contact_velocities(closed, m, u, phases.rates)
+    gap_accelerations(model, closed, m, system)
     for row in range(2 * m):
-        work.b[row] += time * work.loaded[row]
-    reverse_directions(work, m, 2 * m, elements, work.b)
-    fill_matrix(work, m, elements)
-    fill_rhs(work, m, elements, work.b)
-    note_posed(work, m, elements, 0, Level.COMPRESSION)
-    rung = solve_contacts(work, m, elements)
-    read_forces(work, m, elements, work.force)
-    restore_directions(work, 2 * m, work.b)
-    return rung != Solver.FAILED
+        phases.rates[row] += time * system.b[row]
+    choose_signs(system.G, phases.rates, m, 2 * m, elements, problem)
+    fill_matrix(system.G, m, elements, problem)
+    fill_rhs(phases.rates, m, elements, problem)
+    solver = solve_contacts(m, elements, 0, Level.COMPRESSION, problem)
+    read_forces(m, elements, problem, phases.impulse)
+    return solver != Solver.FAILED
 
 
 @kernel
-def energy_change(m, work):
-    """(T after minus T before of the impact just solved, sum of its terms without sign), J.
+def energy_gain(m, G, rates, impulse):
+    """(kinetic energy that m contacts' impulses add to motion at these rates, sum of its terms without sign), J.
 
     Lambda·(rates before + half of G Lambda).
     """
-    change, terms = 0.0, 0.0
+    gain, terms = 0.0, 0.0
     for row in range(2 * m):
         jump = 0.0
         for j in range(2 * m):
-            jump += work.G[row, j] * work.force[j]
-        change += work.force[row] * (work.b[row] + 0.5 * jump)
-        terms += abs(work.force[row]) * (abs(work.b[row]) + 0.5 * abs(jump))
-    return change, terms
+            jump += G[row, j] * impulse[j]
+        gain += impulse[row] * (rates[row] + 0.5 * jump)
+        terms += abs(impulse[row]) * (abs(rates[row]) + 0.5 * abs(jump))
+    return gain, terms

@@ -41,7 +41,7 @@ class Level(IntEnum):
 
 
 class Solver(IntEnum):
-    """Of the ladder in solver_fallbacks.py; places in `ContactWork.rungs`."""
+    """The methods of `solve_contacts`, in their order; places in `FrictionProblem.solvers`."""
 
     LEMKE = 0
     COPOSITIVE = 1
@@ -69,45 +69,45 @@ class LcpOutcome(IntEnum):
 
 
 @kernel
-def is_solution(n, work):
+def is_solution(n, room):
     """True when the scaled trial solves the problem to rounding; see `solves`."""
-    return solves(n, 0.0, work)
+    return solves(n, 0.0, room)
 
 
 @kernel
-def solves(n, rough, work):
+def solves(n, rough, room):
     """True when the scaled trial solves the problem; each y_i is judged by the terms it is the sum of and by rounding.
 
     `rough`: the share that may be missing of the load that drives the problem, or of the largest unknown.
-    `work.worst` keeps the worst violation of an accepted solution, as a share of one or of its largest unknown.
+    `room.worst` keeps the worst violation of an accepted solution, as a share of one or of its largest unknown.
     """
     largest, worst = 0.0, 0.0
     for i in range(n):
-        largest = max(largest, abs(work.trial[i]))
+        largest = max(largest, abs(room.trial[i]))
     floor = max(1.0, largest)
-    missing = LCP_ROUNDING * floor + rough * max(work.worst.driver, largest)
+    missing = LCP_ROUNDING * floor + rough * max(room.worst.driver, largest)
     for i in range(n):
-        y, terms = work.load[i], abs(work.load[i])
+        y, terms = room.load[i], abs(room.load[i])
         for j in range(n):
-            term = work.matrix[i, j] * work.trial[j]
+            term = room.matrix[i, j] * room.trial[j]
             y += term
             terms += abs(term)
         allowed = LCP_RESIDUAL * terms + missing
-        if not math.isfinite(terms) or work.trial[i] < 0.0 or y < -allowed or (work.trial[i] > 0.0 and y > allowed):
+        if not math.isfinite(terms) or room.trial[i] < 0.0 or y < -allowed or (room.trial[i] > 0.0 and y > allowed):
             return False
-        worst = max(worst, -y, abs(y) if work.trial[i] > 0.0 else 0.0)
-    work.worst.violation = max(work.worst.violation, worst / floor)
+        worst = max(worst, -y, abs(y) if room.trial[i] > 0.0 else 0.0)
+    room.worst.violation = max(room.worst.violation, worst / floor)
     return True
 
 
 @kernel
-def solve_active(n, work):
+def solve_active(n, room):
     """Solve A_aa x_a = -b_a for the active indices into trial; False if singular (free unknowns are then left zero)."""
-    S = work.square
-    count = _gather(n, work)
+    S = room.square
+    count = _gather(n, room)
     regular = True
     for step in range(count):
-        if not _eliminate(count, step, work):
+        if not _eliminate(count, step, room):
             regular = False
             for m in range(count + 1):
                 S[step, m] = 0.0
@@ -115,32 +115,32 @@ def solve_active(n, work):
     for k in range(count - 1, -1, -1):
         value = S[k, count]
         for m in range(k + 1, count):
-            value -= S[k, m] * work.trial[work.order[m]]
+            value -= S[k, m] * room.trial[room.order[m]]
         value /= S[k, k]
-        work.trial[work.order[k]] = 0.0 if -LCP_RESIDUAL < value <= 0.0 else value
+        room.trial[room.order[k]] = 0.0 if -LCP_RESIDUAL < value <= 0.0 else value
     return regular
 
 
 @kernel
-def _gather(n, work):
+def _gather(n, room):
     """Copy the active block and its right-hand side into `square`; returns its size."""
     count = 0
     for i in range(n):
-        work.trial[i] = 0.0
-        if work.is_active[i]:
-            work.order[count] = i
+        room.trial[i] = 0.0
+        if room.is_active[i]:
+            room.order[count] = i
             count += 1
     for k in range(count):
         for m in range(count):
-            work.square[k, m] = work.matrix[work.order[k], work.order[m]]
-        work.square[k, count] = -work.load[work.order[k]]
+            room.square[k, m] = room.matrix[room.order[k], room.order[m]]
+        room.square[k, count] = -room.load[room.order[k]]
     return count
 
 
 @kernel
-def _eliminate(count, step, work):
+def _eliminate(count, step, room):
     """One step of Gaussian elimination with complete pivoting; False when only rounding errors are left."""
-    S = work.square
+    S = room.square
     row, column = step, step
     for k in range(step, count):
         for m in range(step, count):
@@ -152,7 +152,7 @@ def _eliminate(count, step, work):
         S[step, m], S[row, m] = S[row, m], S[step, m]
     for k in range(count):
         S[k, step], S[k, column] = S[k, column], S[k, step]
-    work.order[step], work.order[column] = work.order[column], work.order[step]
+    room.order[step], room.order[column] = room.order[column], room.order[step]
     for k in range(step + 1, count):
         factor = S[k, step] / S[step, step]
         for m in range(step, count + 1):
@@ -170,45 +170,45 @@ SWEEPS = 3
 
 
 @kernel
-def scale(A, b, n, work):
+def scale(A, b, n, room):
     """Fill the scaled problem R A C, R b / beta, and its most negative load; returns beta.
 
     x = C x_scaled beta, y = y_scaled beta / R.
     """
-    _scale_pairs(A, n, work)
-    _balance(A, n, work)
+    _scale_pairs(A, n, room)
+    _balance(A, n, room)
     largest = 0.0
     for i in range(n):
         for j in range(n):
-            work.matrix[i, j] = work.row_scale[i] * A[i, j] * work.column_scale[j]
-        work.load[i] = work.row_scale[i] * b[i]
-        largest = max(largest, abs(work.load[i]))
+            room.matrix[i, j] = room.row_scale[i] * A[i, j] * room.column_scale[j]
+        room.load[i] = room.row_scale[i] * b[i]
+        largest = max(largest, abs(room.load[i]))
     magnitude, driver = _power_of_two(largest), 0.0
     for i in range(n):
-        work.load[i] /= magnitude
-        driver = max(driver, -work.load[i])
-    work.worst.driver = driver
+        room.load[i] /= magnitude
+        driver = max(driver, -room.load[i])
+    room.worst.driver = driver
     return magnitude
 
 
 @kernel
-def _scale_pairs(A, n, work):
+def _scale_pairs(A, n, room):
     """R = C with unit positive diagonals; a row without one is scaled by its mutual coefficients sqrt|A_ij A_ji|."""
-    s = work.row_scale
+    s = room.row_scale
     for i in range(n):
         s[i] = 1.0 / math.sqrt(A[i, i]) if A[i, i] > 0.0 else 0.0
-        work.column_scale[i] = s[i]
+        room.column_scale[i] = s[i]
     for i in range(n):
         if s[i] == 0.0:
             largest = _largest_mutual(A, i, n, s)
             if largest == 0.0:
                 largest = math.sqrt(abs(A[i, i]))
-            work.column_scale[i] = 1.0 / largest if largest > 0.0 else 1.0
+            room.column_scale[i] = 1.0 / largest if largest > 0.0 else 1.0
     for i in range(n):  # a diagonal that is small only by cancellation must not blow up its row
-        s[i] = work.column_scale[i] / math.sqrt(max(1.0, work.column_scale[i] * _largest_mutual(A, i, n, work.column_scale)))
+        s[i] = room.column_scale[i] / math.sqrt(max(1.0, room.column_scale[i] * _largest_mutual(A, i, n, room.column_scale)))
     for i in range(n):
         s[i] = _power_of_two(s[i])
-        work.column_scale[i] = s[i]
+        room.column_scale[i] = s[i]
 
 
 @kernel
@@ -222,31 +222,31 @@ def _largest_mutual(A, i, n, s):
 
 
 @kernel
-def _balance(A, n, work):
+def _balance(A, n, room):
     """Make the largest coefficients of row i and of column i alike, keeping R_i C_i (Osborne 1960).
 
     All at once in each sweep, with half the exponent: the result does not depend on the order of the unknowns. A sweep that
     changes nothing is the last one.
     """
-    r, c, s = work.row_scale, work.column_scale, work.trial
+    r, c, s = room.row_scale, room.column_scale, room.trial
     for i in range(n):
         s[i] = c[i]
     for _ in range(SWEEPS):
         balanced = True
         for i in range(n):
-            work.load[i] = _unbalance(A, n, i, work)
-            balanced = balanced and work.load[i] == 1.0
+            room.load[i] = _unbalance(A, n, i, room)
+            balanced = balanced and room.load[i] == 1.0
         if balanced:
             return
         for i in range(n):
-            r[i] *= work.load[i]
-            c[i] /= work.load[i]
+            r[i] *= room.load[i]
+            c[i] /= room.load[i]
 
 
 @kernel
-def _unbalance(A, n, i, work):
+def _unbalance(A, n, i, room):
     """The power of two nearest (largest of column i / largest of row i)^(1/4)."""
-    r, c, s = work.row_scale, work.column_scale, work.trial
+    r, c, s = room.row_scale, room.column_scale, room.trial
     row = column = 0.0
     for j in range(n):
         # What rounding leaves of a zero says nothing about units; the mutual coefficient does not depend on them.
@@ -260,10 +260,10 @@ def _unbalance(A, n, i, work):
 
 
 @kernel
-def unscale(n, magnitude, work, out_x):
+def unscale(n, magnitude, room, out_x):
     """x in its own units."""
     for i in range(n):
-        out_x[i] = work.column_scale[i] * work.trial[i] * magnitude
+        out_x[i] = room.column_scale[i] * room.trial[i] * magnitude
 
 
 @kernel
@@ -334,66 +334,66 @@ def lcp_work(size: int) -> LcpWork:
 
 
 @entry
-def solve_lcp(A: Array, b: Array, n: int, work: LcpWork, out_x: Array) -> LcpOutcome:
+def solve_lcp(A: Array, b: Array, n: int, room: LcpWork, out_x: Array) -> LcpOutcome:
     """Solve the leading n×n problem into out_x[:n]: Lemke, checked, then enumeration up to ENUMERATED_SIZE unknowns.
 
     SOLVED: out_x solves the problem to rounding. Else why Lemke failed; enumeration found nothing.
     """
-    outcome = lemke_checked(A, b, n, work, out_x)
-    if outcome != LcpOutcome.SOLVED and n <= ENUMERATED_SIZE and enumerate_lcp(A, b, n, work, out_x) == LcpOutcome.SOLVED:
+    outcome = lemke_checked(A, b, n, room, out_x)
+    if outcome != LcpOutcome.SOLVED and n <= ENUMERATED_SIZE and enumerate_lcp(A, b, n, room, out_x) == LcpOutcome.SOLVED:
         return LcpOutcome.SOLVED
     return outcome
 
 
 @kernel
-def lemke_checked(A: Array, b: Array, n: int, work: LcpWork, out_x: Array) -> LcpOutcome:
+def lemke_checked(A: Array, b: Array, n: int, room: LcpWork, out_x: Array) -> LcpOutcome:
     """Lemke's method; SOLVED only if what it ended with solves the problem to rounding."""
-    return lemke_on_path(A, b, n, 0, work, out_x)
+    return lemke_on_path(A, b, n, 0, room, out_x)
 
 
 @kernel
-def lemke_on_path(A: Array, b: Array, n: int, path: int, work: LcpWork, out_x: Array) -> LcpOutcome:
+def lemke_on_path(A: Array, b: Array, n: int, path: int, room: LcpWork, out_x: Array) -> LcpOutcome:
     """The same on another path: the numbers of the paths have no meaning, but 0 is the usual one.
 
     The others begin with loads that are a little larger, each by another share, so that no two rows of zeros tie, and half of
     them with other multiples of z0; the basis that they end with is judged with the true loads.
     """
-    outcome: LcpOutcome = _follow(A, b, n, path, work, out_x)
-    if outcome == LcpOutcome.SOLVED and not (_is_trivial(b, n) or is_solution(n, work)):
+    outcome: LcpOutcome = _follow(A, b, n, path, room, out_x)
+    if outcome == LcpOutcome.SOLVED and not (_is_trivial(b, n) or is_solution(n, room)):
         return LcpOutcome.INEXACT
     return outcome
 
 
 @entry
-def lemke(A: Array, b: Array, n: int, work: LcpWork, out_x: Array) -> LcpOutcome:
+def lemke(A: Array, b: Array, n: int, room: LcpWork, out_x: Array) -> LcpOutcome:
     """Lemke's method on the leading n×n problem; out_x[:n] is set when the outcome is SOLVED (unchecked), else zero."""
-    return _follow(A, b, n, 0, work, out_x)
+    return _follow(A, b, n, 0, room, out_x)
 
 
 @kernel
-def _follow(A: Array, b: Array, n: int, path: int, work: LcpWork, out_x: Array) -> LcpOutcome:
+def _follow(A: Array, b: Array, n: int, path: int, room: LcpWork, out_x: Array) -> LcpOutcome:
     for i in range(n):
-        out_x[i], work.is_active[i] = 0.0, 0
+        out_x[i], room.is_active[i] = 0.0, 0
     if _is_trivial(b, n):
         return LcpOutcome.SOLVED
-    magnitude = scale(A, b, n, work)
-    outcome = _pivot_to_end(n, path, work)
+    magnitude = scale(A, b, n, room)
+    outcome = _pivot_to_end(n, path, room)
     if outcome == LcpOutcome.SOLVED:
-        _solve_basis(n, path, work)
-        unscale(n, magnitude, work, out_x)
+        _solve_basis(n, path, room)
+        unscale(n, magnitude, room, out_x)
     return outcome
 
 
 @entry
-def enumerate_lcp(A: Array, b: Array, n: int, work: LcpWork, out_x: Array) -> LcpOutcome:
+def enumerate_lcp(A: Array, b: Array, n: int, room: LcpWork, out_x: Array) -> LcpOutcome:
     """Try every set of active indices, the empty one first; SOLVED with out_x[:n], or RAY when none solves the problem."""
-    magnitude = scale(A, b, n, work)
+    magnitude = scale(A, b, n, room)
     for chosen in range(1 << n):
         for i in range(n):
-            work.is_active[i] = (chosen >> i) & 1
-        solve_active(n, work)
-        if is_solution(n, work):
-            unscale(n, magnitude, work, out_x)
+            room.is_active[i] = (chosen >> i) & 1
+        solve_active(n, room)
+        if is_solution(n, room):
+            unscale(n, magnitude, room, out_x)
             return LcpOutcome.SOLVED
     for i in range(n):
         out_x[i] = 0.0
@@ -410,25 +410,25 @@ def _is_trivial(b: Array, n: int) -> bool:
 
 
 @kernel
-def _pivot_to_end(n: int, path: int, work: LcpWork) -> LcpOutcome:
+def _pivot_to_end(n: int, path: int, room: LcpWork) -> LcpOutcome:
     """Lemke's path on y - A x - d z0 = b, from z0 large enough to the basis that z0 leaves."""
     z0 = 2 * n
-    row = _start(n, path, work)
+    row = _start(n, path, room)
     entering = z0
     for _ in range(50 + 20 * n):
-        leaving = work.basis[row]
-        _pivot(n, row, entering, work)
+        leaving = room.basis[row]
+        _pivot(n, row, entering, room)
         if leaving == z0:
             return LcpOutcome.SOLVED
         entering = leaving + n if leaving < n else leaving - n
-        bounded, row = _leaving_row(n, entering, work)
+        bounded, row = _leaving_row(n, entering, room)
         if not bounded:
             return LcpOutcome.RAY
     return LcpOutcome.TOO_MANY_PIVOTS
 
 
 @kernel
-def _start(n: int, path: int, work: LcpWork) -> int:
+def _start(n: int, path: int, room: LcpWork) -> int:
     """Set up the tableau; returns the row z0 enters in: the most negative load over d, the last of equals (lexicographic).
 
     Any d > 0 will do (Cottle, Pang, Stone, 4.4); paths up to PLAIN take ones.
@@ -437,28 +437,28 @@ def _start(n: int, path: int, work: LcpWork) -> int:
     uneven = path if path > PLAIN else 0
     more = 0.0
     if path > 0:
-        more = work.worst.driver * LCP_PERTURBED * LCP_LESS ** ((path - 1) % PLAIN)
+        more = room.worst.driver * LCP_PERTURBED * LCP_LESS ** ((path - 1) % PLAIN)
     for i in range(n):
-        work.basis[i] = i
+        room.basis[i] = i
         for j in range(n):
-            work.tableau[i, j] = 0.0
-            work.tableau[i, n + j] = -work.matrix[i, j]
-        work.tableau[i, i] = 1.0
+            room.tableau[i, j] = 0.0
+            room.tableau[i, n + j] = -room.matrix[i, j]
+        room.tableau[i, i] = 1.0
         cover = 1.0 + uneven * ((UNEVEN * i + uneven) % PERIOD) / PERIOD
-        work.tableau[i, 2 * n] = -cover
-        load = work.load[i]
+        room.tableau[i, 2 * n] = -cover
+        load = room.load[i]
         if more > 0.0:
             load += more * (UNLIKE * (i + 1) * (path + 1) % 1.0)
-        work.tableau[i, 2 * n + 1] = load
+        room.tableau[i, 2 * n + 1] = load
         if load / cover <= lowest:
             row, lowest = i, load / cover
     return row
 
 
 @kernel
-def _pivot(n: int, row: int, column: int, work: LcpWork) -> None:
+def _pivot(n: int, row: int, column: int, room: LcpWork) -> None:
     """Gauss-Jordan step: `column` becomes the unit vector of `row` and enters the basis."""
-    T = work.tableau
+    T = room.tableau
     factor = 1.0 / T[row, column]
     for j in range(2 * n + 2):
         T[row, j] *= factor
@@ -469,34 +469,34 @@ def _pivot(n: int, row: int, column: int, work: LcpWork) -> None:
             for j in range(2 * n + 2):
                 T[i, j] -= factor * T[row, j]
             T[i, column] = 0.0
-    work.basis[row] = column
+    room.basis[row] = column
 
 
 @kernel
-def _leaving_row(n: int, column: int, work: LcpWork) -> tuple[bool, int]:
+def _leaving_row(n: int, column: int, room: LcpWork) -> tuple[bool, int]:
     """(found, row of the lexicographically smallest ratio, z0's row among equals); not found: the column is a ray."""
     largest = 1.0
     for i in range(n):
-        largest = max(largest, work.tableau[i, column])
+        largest = max(largest, room.tableau[i, column])
     found = False
     best = column  # any integer: numba would compile the comparison twice for a literal
     for i in range(n):
-        if work.tableau[i, column] > LCP_PIVOT * largest and (not found or _is_smaller(n, i, best, column, work)):
+        if room.tableau[i, column] > LCP_PIVOT * largest and (not found or _is_smaller(n, i, best, column, room)):
             found = True
             best = i
     return found, best
 
 
 @kernel
-def _is_smaller(n: int, i: int, k: int, column: int, work: LcpWork) -> bool:
+def _is_smaller(n: int, i: int, k: int, column: int, room: LcpWork) -> bool:
     """True when row i leaves before row k: compare right-hand sides over the pivots, then z0, then the inverse basis."""
-    T = work.tableau
+    T = room.tableau
     left, right = T[i, 2 * n + 1] / T[i, column], T[k, 2 * n + 1] / T[k, column]
     # Ratios go with the load that drives the problem, which may be a billionth of the largest.
-    if abs(left - right) > RATIO_TIE * max(work.worst.driver, abs(left)) + LOAD_ROUNDING:
+    if abs(left - right) > RATIO_TIE * max(room.worst.driver, abs(left)) + LOAD_ROUNDING:
         return left < right
-    if work.basis[i] == 2 * n or work.basis[k] == 2 * n:
-        return work.basis[i] == 2 * n
+    if room.basis[i] == 2 * n or room.basis[k] == 2 * n:
+        return room.basis[i] == 2 * n
     for j in range(n):
         left, right = T[i, j] / T[i, column], T[k, j] / T[k, column]
         if abs(left - right) > RATIO_TIE * max(1.0, abs(left)):
@@ -505,18 +505,18 @@ def _is_smaller(n: int, i: int, k: int, column: int, work: LcpWork) -> bool:
 
 
 @kernel
-def _solve_basis(n: int, path: int, work: LcpWork) -> None:
+def _solve_basis(n: int, path: int, room: LcpWork) -> None:
     """The x of the final basis: solved afresh from the scaled data, or, if that block is singular, read off the tableau.
 
     The tableaus of other paths than 0 have other loads.
     """
     for i in range(n):
-        work.is_active[i] = 0
+        room.is_active[i] = 0
     for row in range(n):
-        if n <= work.basis[row] < 2 * n:
-            work.is_active[work.basis[row] - n] = 1
-    if solve_active(n, work) and (path > 0 or is_solution(n, work)):
+        if n <= room.basis[row] < 2 * n:
+            room.is_active[room.basis[row] - n] = 1
+    if solve_active(n, room) and (path > 0 or is_solution(n, room)):
         return
     for row in range(n):
-        if n <= work.basis[row] < 2 * n:
-            work.trial[work.basis[row] - n] = max(0.0, work.tableau[row, 2 * n + 1])
+        if n <= room.basis[row] < 2 * n:
+            room.trial[room.basis[row] - n] = max(0.0, room.tableau[row, 2 * n + 1])

@@ -1,4 +1,8 @@
-"""Which contacts are closed at this instant?"""
+"""Which contacts are closed at this instant?
+
+Those in force pass to neighbouring primitives (`hand_over`) or end (`release_left`); those without a gap are gathered
+(`gather`), island by island placed (`place_contacts`) and relieved of what cannot count (`drop_immovable`, `defer_parallel`).
+"""
 
 from __future__ import annotations
 
@@ -6,8 +10,9 @@ import math
 
 from watchsim.contact.cell_lookup import LISTED, UNKNOWN, candidate, candidates
 from watchsim.contact.gaps import OPEN, contact_kinematics, contact_point, extent_margin, normal_gap, place
+from watchsim.dynamics.delassus import fill_delassus, inverse_mass
 from watchsim.jit import kernel
-from watchsim.simulation.coupled_motion import is_at_rest, project_velocities
+from watchsim.simulation.coupled_motion import is_at_rest, place_contacts, project_velocities
 from watchsim.simulation.scratch import keep_event, request_cell
 from watchsim.simulation.state import NO_CONTACT, EventKind, Stop
 from watchsim.tolerances import (
@@ -15,6 +20,8 @@ from watchsim.tolerances import (
     EXPLAINED_OF_HIGHEST,
     EXPLAINED_SHARE,
     FAR_POINTS,
+    HIDDEN_REBOUND,
+    IMMOVABLE,
     LEFT_PRIMITIVE,
     NEAR_POINTS,
     SHARP_TURN,
@@ -22,42 +29,8 @@ from watchsim.tolerances import (
     STOPPABLE_SPEED,
 )
 
-# Is every change of velocities at an instant explained by its impulses?
-#
-# Impulses account for what they take. What else moves velocities at an instant are corrections of rounding size: drift
-# taken back, slips and speeds that count as zero. The kinetic energy that such a change takes or gives must be next to nothing.
-
-
-@kernel
-def kinetic_energy(model, u):
-    """J."""
-    total = 0.0
-    for i in range(len(u)):
-        if not model.coordinates[i].driven:
-            total += 0.5 * model.coordinates[i].mass * u[i] * u[i]
-    return total
-
-
-@kernel
-def is_explained(model, options, before, after, highest):
-    """True if a change of kinetic energy from `before` to `after` (J, impulses taken out) is of the size of rounding."""
-    allowed = EXPLAINED_SHARE * before + EXPLAINED_OF_HIGHEST * highest
-    change = abs(after - before)
-    if change <= allowed:
-        return True
-    for i in range(len(model.coordinates)):
-        coordinate = model.coordinates[i]
-        if coordinate.driven:
-            continue
-        slow = STOPPABLE_SPEED * options.speed_zero / options.size * coordinate.scale
-        allowed += 0.5 * coordinate.mass * slow * slow
-    return change <= allowed
-
-
-# Is this the same contact on a neighbouring primitive, and how does a contact pass from one to the next?
-#
-# Where two primitives join smoothly, or an arc of the touching body ends in its corner, both sides have the same contact point
-# and the same normal. Then the contact goes on with its mode: no impact, no release.
+# Handover: where two primitives join smoothly, or an arc of the touching body ends in its corner, both sides have the same
+# contact point and the same normal. Then the contact goes on with its mode: no impact, no release.
 
 
 @kernel
@@ -92,15 +65,15 @@ def room_to_differ(model, k, other, options, pose):
 
 
 @kernel
-def is_beside_active(model, state, k):
-    """True if open contact k is beside a contact in force that excludes it: one primitive the same, the others neighbours.
+def is_beside_active(model, active, in_force, k):
+    """True if open contact k is beside one of active[:in_force] that excludes it: one primitive shared, the others neighbours.
 
     What touches an outline from outside near a convex corner, or near a smooth joint of lines and convex arcs, does so in
     one point. The contact in force ends, with an event, before its neighbour can begin.
     """
     one = model.contacts[k]
-    for j in range(state.now.awake_contacts):
-        two = model.contacts[state.active[j]]
+    for j in range(in_force):
+        two = model.contacts[active[j]]
         if one.a == two.a:
             mine, its = one.b, two.b
         elif one.b == two.b:
@@ -117,52 +90,37 @@ def is_beside_active(model, state, k):
 
 
 @kernel
-def continues_active(model, state, options, k, pose):
-    """True if open contact k is a contact in force, seen from a neighbouring primitive."""
-    way, _ = room_beside_active(model, state, options, k, pose)
-    return way >= 0.0
-
-
-@kernel
-def room_beside_active(model, state, options, k, pose):
-    """`room_to_differ` from the contact in force that open contact k continues; negative where it continues none."""
-    for j in range(state.now.awake_contacts + state.now.sleeping_contacts):
-        way, turn = room_to_differ(model, k, state.active[j], options, pose)
+def room_beside_active(model, active, in_force, options, k, pose):
+    """`room_to_differ` from that of active[:in_force] which open contact k continues; negative where it continues none."""
+    for j in range(in_force):
+        way, turn = room_to_differ(model, k, active[j], options, pose)
         if way >= 0.0 and turn >= 0.0:
             return way, turn
     return -1.0, -1.0
 
 
 @kernel
-def _pair_of(model, k):
-    p = 0
-    while not model.pairs[p].start <= k < model.pairs[p].stop:
-        p += 1
-    return p
-
-
-@kernel
-def _successor(model, cells, state, options, k, scratch):
+def _successor(model, cells, q, mode, options, k, pose, asked, out_counts):
     """The open contact that goes on where contact k ends: (known, its number or NO_CONTACT).
 
     `known` is False where the cell is unknown.
     """
-    p = _pair_of(model, k)
-    how, start, count = candidates(model, cells, p, state.q)
+    p = 0
+    while not model.pairs[p].start <= k < model.pairs[p].stop:
+        p += 1
+    how, start, count = candidates(model, cells, p, q)
     if how == UNKNOWN:
-        request_cell(scratch.asked, p, state.q)
+        request_cell(asked, p, q)
         return False, NO_CONTACT
     if how == LISTED:
-        state.counts.cells_looked_up += 1
+        out_counts.cells_looked_up += 1
     best, deepest = NO_CONTACT, -options.extent
     for slot in range(start, start + count):
         j = candidate(model, cells, how, slot)
-        if state.mode[j] != OPEN:
+        if mode[j] != OPEN or abs(normal_gap(model, j, pose).gap) > options.gap_close:
             continue
-        if abs(normal_gap(model, j, scratch.event.pose).gap) > options.gap_close:
-            continue
-        margin = extent_margin(model, j, scratch.event.pose)
-        if margin >= deepest and same_contact(model, j, k, options, scratch.event.pose):
+        margin = extent_margin(model, j, pose)
+        if margin >= deepest and same_contact(model, j, k, options, pose):
             best, deepest = j, margin
     return True, best
 
@@ -170,35 +128,43 @@ def _successor(model, cells, state, options, k, scratch):
 @kernel
 def hand_over(model, cells, state, options, scratch, record):
     """Pass contacts that left their primitives to their neighbours. Poses must be current; False where a cell is unknown."""
-    moved = False
-    for j in range(state.now.awake_contacts + state.now.sleeping_contacts):
+    moved, event, mode = False, scratch.event, state.mode
+    for j in range(state.instant.awake_contacts + state.instant.sleeping_contacts):
         k = state.active[j]
-        if extent_margin(model, k, scratch.event.pose) >= -LEFT_PRIMITIVE * options.extent:
+        if extent_margin(model, k, event.pose) >= -LEFT_PRIMITIVE * options.extent:
             continue
-        known, successor = _successor(model, cells, state, options, k, scratch)
+        known, successor = _successor(model, cells, state.q, mode, options, k, event.pose, scratch.asked, state.counts)
         if not known:
             return False
         if successor != NO_CONTACT:
-            state.mode[successor], state.mode[k] = state.mode[k], OPEN
+            mode[successor], mode[k] = mode[k], OPEN
             state.active[j] = successor
-            keep_event(state, record, EventKind.HANDOVER, successor, -1, float(k))
+            keep_event(record, state.clock, state.counts, EventKind.HANDOVER, successor, -1, float(k))
             moved = True
     if moved:
-        _follow(model, state, scratch.work, scratch.event)
+        # Take back what the way beyond the primitive's end has done to the velocities: normals differ by the turn there.
+        m = place_contacts(model, state.active, 0, state.instant.awake_contacts, event.pose, event.closed)
+        inverse = scratch.work.system.inverse
+        project_velocities(event.closed, m, mode, DEPENDENT_IN_STEPS, inverse, scratch.projection, state.u)
+        place(model, state.q, state.u, event.pose)
     return True
 
 
 @kernel
-def _follow(model, state, work, event):
-    """Take back what the way beyond the primitive's end has done to the velocities: normals differ by the turn there."""
-    m = state.now.awake_contacts
-    for i in range(m):
-        contact_kinematics(model, state.active[i], event.pose, i, event.closed)
-    project_velocities(event.closed, m, state.mode, DEPENDENT_IN_STEPS, work, state.u)
-    place(model, state.q, state.u, event.pose)
-
-
-# Which contacts are closed at this instant?
+def release_left(model, state, options, pose, record):
+    """Open the contacts that have left their primitives without a successor."""
+    kept, awake, instant = 0, 0, state.instant
+    for j in range(instant.awake_contacts + instant.sleeping_contacts):
+        k = state.active[j]
+        if extent_margin(model, k, pose) < -LEFT_PRIMITIVE * options.extent:
+            state.mode[k] = OPEN
+            keep_event(record, state.clock, state.counts, EventKind.OPEN, k, -1, 0.0)
+            continue
+        state.active[kept] = k
+        kept += 1
+        if j < instant.awake_contacts:
+            awake += 1
+    instant.awake_contacts, instant.sleeping_contacts = awake, kept - awake
 
 
 @kernel
@@ -216,27 +182,25 @@ def insert(ids, count, k):
 
 
 @kernel
-def gather(model, cells, state, options, scratch):
-    """Ids of I_C, ascending, into `event.listed` of `scratch`: contacts in force and those with a gap of zero.
+def gather(model, cells, state, options, asked, pose, out_ids):
+    """Ids of I_C, ascending: contacts in force and those with a gap of zero.
 
-    What a contact in force will touch next on the same smooth outline is left out.
-
-    Poses must be current. Returns (Stop code: RUNNING, CELL_UNKNOWN or TOO_MANY_CONTACTS; their number).
+    What a contact in force will touch next on the same smooth outline is left out. Poses must be current. Of `state` only
+    counts are written. Returns (Stop code: RUNNING, CELL_UNKNOWN or TOO_MANY_CONTACTS; their number).
     """
-    ids, pose = scratch.event.listed, scratch.event.pose
-    m = 0
-    for j in range(state.now.awake_contacts + state.now.sleeping_contacts):
-        m = insert(ids, m, state.active[j])
+    m, in_force = 0, state.instant.awake_contacts + state.instant.sleeping_contacts
+    for j in range(in_force):
+        m = insert(out_ids, m, state.active[j])
     # The contact that has just touched is closed, even where taking back drift has moved its gap since.
-    if state.now.touched != NO_CONTACT:
-        m = insert(ids, m, state.now.touched)
+    if state.instant.touched != NO_CONTACT:
+        m = insert(out_ids, m, state.instant.touched)
     for p in range(len(model.pairs)):
         pair = model.pairs[p]
-        if is_at_rest(model, state, pair.a) and is_at_rest(model, state, pair.b) and state.clock.time > 0.0:
+        if is_at_rest(model, state.awake, pair.a) and is_at_rest(model, state.awake, pair.b) and state.clock.time > 0.0:
             continue
         how, start, count = candidates(model, cells, p, state.q)
         if how == UNKNOWN:
-            request_cell(scratch.asked, p, state.q)
+            request_cell(asked, p, state.q)
             return Stop.CELL_UNKNOWN, m
         if how == LISTED:
             state.counts.cells_looked_up += 1
@@ -246,11 +210,11 @@ def gather(model, cells, state, options, scratch):
                 continue
             gap = normal_gap(model, k, pose).gap
             if -options.behind <= gap <= options.gap_close and extent_margin(model, k, pose) >= -options.extent:
-                if continues_active(model, state, options, k, pose):
+                if room_beside_active(model, state.active, in_force, options, k, pose)[0] >= 0.0:
                     continue
-                if m == len(ids):
+                if m == len(out_ids):
                     return Stop.TOO_MANY_CONTACTS, m
-                m = insert(ids, m, k)
+                m = insert(out_ids, m, k)
     return Stop.RUNNING, m
 
 
@@ -273,3 +237,132 @@ def resting(model, m, closed, pose, zero, out_rest):
             contact_kinematics(model, closed.ids[i], pose, r, out_rest)
             r += 1
     return r
+
+
+# Immovable contacts: no motion changes the gap of a disc about its own pivot against a bar that slides past it, since the
+# normal force has no lever arm on either body, so that it can neither stop nor be stopped by anything. Such a contact is left
+# out until its lever arms are more than rounding.
+
+
+@kernel
+def is_immovable(model, closed, i):
+    """True if the gap of row i of `closed` changes by next to nothing however its bodies move."""
+    across, along, _ = _mobilities(model, closed, i)
+    return across <= IMMOVABLE * along
+
+
+@kernel
+def has_one_way(model, closed, i, depth):
+    """True if faces along which the bodies of row i of `closed` move are immovable, there or where they are sunk in by `depth`.
+
+    They are where the bodies move past each other in one direction only. A circle of reduced radius r that has sunk in meets
+    the next face beside its place on the last one where that turns by up to sqrt(2 depth/r), and by so much directions differ.
+    """
+    across, along, both = _mobilities(model, closed, i)
+    reduced = abs(model.contacts[closed.ids[i]].reduced)
+    turned = IMMOVABLE + 2.0 * depth / reduced if reduced > 0.0 else IMMOVABLE
+    return across * along - both * both <= turned * (across + along) ** 2
+
+
+@kernel
+def _mobilities(model, closed, i):
+    """What a force along the normal does along it, a tangential one along its own direction, and either along the other's."""
+    across, along, both = 0.0, 0.0, 0.0
+    for slot in range(closed.slots[i]):
+        inverse = inverse_mass(model.coordinates[closed.coord[i, slot]])
+        across += closed.w_N[i, slot] ** 2 * inverse
+        along += closed.w_T[i, slot] ** 2 * inverse
+        both += closed.w_N[i, slot] * closed.w_T[i, slot] * inverse
+    return across, along, both
+
+
+@kernel
+def drop_immovable(model, state, m, event, record):
+    """Leave the immovable ones out of the m contacts in `event.closed`; returns how many are left."""
+    closed, kept = event.closed, 0
+    for i in range(m):
+        k = closed.ids[i]
+        if is_immovable(model, closed, i):
+            if state.mode[k] != OPEN:
+                state.mode[k] = OPEN
+                keep_event(record, state.clock, state.counts, EventKind.OPEN, k, -1, 0.0)
+            continue
+        if kept < i:
+            contact_kinematics(model, k, event.pose, kept, closed)
+        kept += 1
+    return kept
+
+
+# Parallel contacts: both corners of a flap that lands on a bar turn it about its one pivot. If its face is off by a picometre,
+# only one of them can be closed: to close the other one, too, would press the first one in. The other one waits until it is met
+# itself.
+
+
+@kernel
+def defer_parallel(model, mode, touched, m, options, system, event):
+    """Leave out those of the m contacts in `event.closed` that are apart and behind a parallel one; returns how many are left.
+
+    Those in force do not wait, nor does the contact that has just `touched`. Fills `system.G`.
+    """
+    closed, waits, least, some = event.closed, event.waits, HIDDEN_REBOUND * options.gap_zero, False
+    for i in range(m):
+        k = closed.ids[i]
+        waits[i] = 1 if mode[k] == OPEN and k != touched and closed.kin[i].g > least else 0
+        some = some or waits[i] == 1
+    if not some or m < 2:
+        return m
+    fill_delassus(closed, m, system.inverse, system.G)
+    for i in range(m):
+        if waits[i] and not _is_behind(closed, m, i, least, system.G):
+            waits[i] = 0
+    kept = 0
+    for i in range(m):
+        if waits[i]:
+            continue
+        if kept < i:
+            contact_kinematics(model, closed.ids[i], event.pose, kept, closed)
+        kept += 1
+    return kept
+
+
+@kernel
+def _is_behind(closed, m, i, least, G):
+    """True if closing a row that moves the bodies alike leaves row i open by more than `least` (m)."""
+    own = G[2 * i, 2 * i]
+    for j in range(m):
+        both, other = G[2 * i, 2 * j], G[2 * j, 2 * j]
+        is_parallel = j != i and both > 0.0 and both * both >= (1.0 - DEPENDENT_IN_STEPS) * own * other
+        if is_parallel and closed.kin[i].g - closed.kin[j].g * math.sqrt(own / other) > least:
+            return True
+    return False
+
+
+# Is every change of velocities at an instant explained by its impulses? These account for what they take. What else moves
+# velocities at an instant are corrections of rounding size: drift taken back, slips and speeds that count as zero. The kinetic
+# energy that such a change takes or gives must be next to nothing.
+
+
+@kernel
+def kinetic_energy(model, u):
+    """J."""
+    total = 0.0
+    for i in range(len(u)):
+        if not model.coordinates[i].driven:
+            total += 0.5 * model.coordinates[i].mass * u[i] * u[i]
+    return total
+
+
+@kernel
+def is_explained(model, options, before, after, highest):
+    """True if a change of kinetic energy from `before` to `after` (J, impulses taken out) is of the size of rounding."""
+    allowed = EXPLAINED_SHARE * before + EXPLAINED_OF_HIGHEST * highest
+    change = abs(after - before)
+    if change <= allowed:
+        return True
+    for i in range(len(model.coordinates)):
+        coordinate = model.coordinates[i]
+        if coordinate.driven:
+            continue
+        slow = STOPPABLE_SPEED * options.speed_zero / options.size * coordinate.scale
+        allowed += 0.5 * coordinate.mass * slow * slow
+    return change <= allowed

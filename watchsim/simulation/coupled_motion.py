@@ -11,17 +11,10 @@ import math
 
 from watchsim.contact.gaps import OPEN, STICK, contact_kinematics, place_body
 from watchsim.dynamics.acceleration import solve_mode
-from watchsim.dynamics.delassus import (
-    apply,
-    drive_through_contacts,
-    fill_delassus,
-    keep_independent,
-    own_acceleration,
-    solve_small,
-    unit_scale,
-)
+from watchsim.dynamics.delassus import apply, drive_through_contacts, fill_delassus, own_acceleration
 from watchsim.dynamics.forces import add_drag, add_loads, damping_power, drag_power, drive_power, forces
-from watchsim.dynamics.friction import is_paradox
+from watchsim.dynamics.friction import jams
+from watchsim.dynamics.redundant import keep_independent, solve_small, unit_scale
 from watchsim.jit import hot_kernel, kernel
 from watchsim.model import FREE, OVER_TIME, REPEATED
 from watchsim.simulation.scratch import MONITORS
@@ -124,135 +117,145 @@ def place_contacts(model, ids, first, last, pose, out_closed):
 # next to no lever arm (friction on the line of centres), zeroing both rates would move the bodies by far more than the rates
 # themselves: directions that the others nearly determine are left as they are (docs/theory/method.md 2.10).
 
-# sine² of the angle below which a direction counts as one of the others, or as immovable
-
 
 @kernel
-def project_positions(closed, m, both, behind, work, out_q):
+def project_positions(closed, m, both, behind, inverse, projection, out_q):
     """Close the gaps of the first m contacts (only negative ones unless `both`); returns the deepest penetration found, m.
 
-    What is no drift but what flat faces have let bodies sink in (events/immovable.py) stays. `behind`: see `_has_drifted`.
+    What is no drift but what flat faces have let bodies sink in (`is_immovable` in events.py) stays. `behind`: see `_wanted`.
     """
     deepest = 0.0
     for i in range(m):
         deepest = max(deepest, -closed.kin[i].g)
     if deepest == 0.0 and not both:
         return deepest
-    fill_delassus(closed, m, work)
+    fill_delassus(closed, m, inverse, projection.G)
     for i in range(m):
-        work.row[i] = 2 * i
+        projection.row[i] = 2 * i
     n = m
-    if not _close(closed, n, both, behind, work):
-        n = _choose(closed, m, both, behind, work)
-        _close(closed, n, both, behind, work)
+    if not _close(closed, n, both, behind, projection):
+        n = _choose(closed, m, both, behind, projection)
+        _close(closed, n, both, behind, projection)
     for row in range(2 * m):
-        work.correction[row] = 0.0
+        projection.correction[row] = 0.0
     for i in range(n):
-        work.correction[work.row[i]] = work.x[i]
-    apply(closed, m, work.correction, work.inverse, out_q)
+        projection.correction[projection.row[i]] = projection.x[i]
+    apply(closed, m, projection.correction, inverse, out_q)
     return deepest
 
 
 @kernel
-def _wanted(closed, row, both, behind, work):
-    """By how much the gap of this row shall change, m."""
-    gap = closed.kin[row // 2].g
-    return -gap if (both or gap < 0.0) and _has_drifted(work, row, gap, behind) else 0.0
+def _wanted(closed, row, both, behind, G):
+    """By how much the gap of this row shall change, m.
 
-
-@kernel
-def _has_drifted(work, row, gap, behind):
-    """False if a contact is deeper than `behind` (m), or so deep that taking it back would move it far along its face.
-
-    Bodies that have sunk in meet a face at its joint. On the way back to where it has no gap they would leave that face.
+    Not at all where it is deeper than `behind` (m), or so deep that taking it back would move the contact far along its face:
+    bodies that have sunk in meet a face at its joint, and on the way back to where it has no gap they would leave that face.
     """
-    along = abs(work.G[row, row + 1]) * -gap
-    return gap >= -behind and along <= TAKEN_BACK_ALONG * behind * work.G[row, row]
+    gap = closed.kin[row // 2].g
+    drifted = gap >= -behind and abs(G[row, row + 1]) * -gap <= TAKEN_BACK_ALONG * behind * G[row, row]
+    return -gap if (both or gap < 0.0) and drifted else 0.0
 
 
 @kernel
-def _close(closed, n, both, behind, work):
-    """What closes the gaps of the n rows in `work.row` into `work.x`; False where their directions depend on each other."""
+def _fill_system(n, projection):
+    """The n rows of G in `projection.row`, each with each."""
     for i in range(n):
         for j in range(n):
-            work.A[i, j] = work.G[work.row[i], work.row[j]]
-        work.rhs[i] = _wanted(closed, work.row[i], both, behind, work)
-        work.scale[i] = _scale_of(work, work.row[i], DEPENDENT_IN_STEPS)
-    return solve_small(work.A, work.rhs, n, work.scale, work.order, work.x, DEPENDENT_IN_STEPS) == n
+            projection.A[i, j] = projection.G[projection.row[i], projection.row[j]]
 
 
 @kernel
-def _choose(closed, m, both, behind, work):
-    """Leave in `work.row` gaps whose directions do not depend on each other, of m; returns their number.
+def _close(closed, n, both, behind, projection):
+    """What closes the gaps of n rows into `projection.x`; False where their directions depend on each other."""
+    _fill_system(n, projection)
+    for i in range(n):
+        projection.change[i] = _wanted(closed, projection.row[i], both, behind, projection.G)
+        projection.scale[i] = _scale_of(projection.G, projection.row[i], DEPENDENT_IN_STEPS)
+    return _solve(n, DEPENDENT_IN_STEPS, projection) == n
+
+
+@kernel
+def _solve(n, independent, projection):
+    """The impulses that make the changes of n rows; returns how many of these can be made."""
+    A, change, x = projection.A, projection.change, projection.x
+    return solve_small(A, change, n, projection.scale, projection.order, x, independent)
+
+
+@kernel
+def _choose(closed, m, both, behind, projection):
+    """Leave in `projection.row` gaps whose directions do not depend on each other, of m; returns their number.
 
     Not all can be closed: those are that the bodies meet first on the way there, so that none of the others is pressed in.
     """
+    G, A, row, wanted, scale = projection.G, projection.A, projection.row, projection.wanted, projection.scale
     for i in range(m):
-        wanted, place = _scale_of(work, 2 * i, DEPENDENT_IN_STEPS) * _wanted(closed, 2 * i, both, behind, work), i
-        while place > 0 and work.rhs[place - 1] < wanted:
-            work.rhs[place], work.row[place] = work.rhs[place - 1], work.row[place - 1]
+        own, place = _scale_of(G, 2 * i, DEPENDENT_IN_STEPS) * _wanted(closed, 2 * i, both, behind, G), i
+        while place > 0 and wanted[place - 1] < own:
+            wanted[place], row[place] = wanted[place - 1], row[place - 1]
             place -= 1
-        work.rhs[place], work.row[place] = wanted, 2 * i
+        wanted[place], row[place] = own, 2 * i
     for i in range(m):
-        work.scale[i] = _scale_of(work, work.row[i], DEPENDENT_IN_STEPS)
+        scale[i] = _scale_of(G, row[i], DEPENDENT_IN_STEPS)
     for i in range(m):
         for j in range(m):
-            work.A[i, j] = work.scale[i] * work.G[work.row[i], work.row[j]] * work.scale[j]
-    return keep_independent(work.A, m, DEPENDENT_IN_STEPS, work.row)
+            A[i, j] = scale[i] * G[row[i], row[j]] * scale[j]
+    return keep_independent(A, m, DEPENDENT_IN_STEPS, row)
 
 
 @kernel
-def project_velocities(closed, m, mode, independent, work, out_u):
+def project_velocities(closed, m, mode, independent, inverse, projection, out_u):
     """Make the gap rates of the first m contacts in force, and the slip of the sticking ones, zero.
 
     `independent`: DEPENDENT_IN_STEPS or DEPENDENT_AT_EVENTS.
     """
-    find_correction(closed, m, mode, independent, work)
-    apply(closed, m, work.correction, work.inverse, out_u)
+    find_correction(closed, m, mode, independent, inverse, projection)
+    apply(closed, m, projection.correction, inverse, out_u)
 
 
 @kernel
-def find_correction(closed, m, mode, independent, work):
-    """The impulses of `project_velocities` into `work.correction`; fills `work.G`."""
-    fill_delassus(closed, m, work)
+def find_correction(closed, m, mode, independent, inverse, projection):
+    """The impulses of `project_velocities` into `projection.correction`."""
+    fill_delassus(closed, m, inverse, projection.G)
     n = 0
     for i in range(m):
         state = mode[closed.ids[i]]
-        work.correction[2 * i], work.correction[2 * i + 1] = 0.0, 0.0
+        projection.correction[2 * i], projection.correction[2 * i + 1] = 0.0, 0.0
         if state != OPEN:
-            n = _add_row(work, 2 * i, -closed.kin[i].gN_dot, n, independent)
+            n = _add_row(projection, 2 * i, -closed.kin[i].gN_dot, n, independent)
         if state == STICK:
-            n = _add_row(work, 2 * i + 1, -closed.kin[i].gT_dot, n, independent)
+            n = _add_row(projection, 2 * i + 1, -closed.kin[i].gT_dot, n, independent)
+    _fill_system(n, projection)
+    _solve(n, independent, projection)
     for i in range(n):
-        for j in range(n):
-            work.A[i, j] = work.G[work.row[i], work.row[j]]
-    solve_small(work.A, work.rhs, n, work.scale, work.order, work.x, independent)
-    for i in range(n):
-        work.correction[work.row[i]] = work.x[i]
+        projection.correction[projection.row[i]] = projection.x[i]
 
 
 @kernel
-def rate_left(closed, m, i, work):
-    """Gap rate of contact i after the correction just found."""
+def rate_left(closed, m, i, projection):
+    """Gap rate of contact i after the correction just found, m/s."""
     rate = closed.kin[i].gN_dot
     for row in range(2 * m):
-        rate += work.G[2 * i, row] * work.correction[row]
+        rate += projection.G[2 * i, row] * projection.correction[row]
     return rate
 
 
 @kernel
-def _add_row(work, row, rate, n, independent):
+def _add_row(projection, row, rate, n, independent):
     """Append the row of G with what its rate shall change by; returns the new number of rows."""
-    work.row[n], work.rhs[n], work.scale[n] = row, rate, _scale_of(work, row, independent)
+    projection.row[n], projection.change[n] = row, rate
+    projection.scale[n] = _scale_of(projection.G, row, independent)
     return n + 1
 
 
 @kernel
-def _scale_of(work, row, independent):
-    """Unit diagonal for what can be moved, less for slips; zero for what next to no impulse along its direction moves."""
+def _scale_of(G, row, independent):
+    """Unit diagonal for what can be moved, less for slips; zero for what next to no impulse along its direction moves.
+
+    `independent`: sine² of the angle below which a direction counts as one of the others, or as immovable.
+    """
     normal = row - row % 2
-    easiest = work.G[normal, normal] + work.G[normal + 1, normal + 1]
-    own = work.G[row, row]
+    easiest = G[normal, normal] + G[normal + 1, normal + 1]
+    own = G[row, row]
     if own <= independent * easiest:
         return 0.0
     return unit_scale(own) if row == normal else SLIP_WEIGHT * unit_scale(own)
@@ -273,12 +276,11 @@ def _share_terms(model, out_terms):
 
 
 @kernel
-def _is_still(model, state, options, i, terms):
-    """Coordinate i has no velocity and no acceleration beyond rounding; `terms` is the sum of the forces on it without sign."""
-    coordinate = model.coordinates[i]
-    if abs(state.u[i]) * options.size > options.speed_zero * coordinate.scale:
+def _is_still(coordinate, u, a, options, terms):
+    """It has no velocity and no acceleration beyond rounding; `terms` is the sum of the forces on it without sign."""
+    if abs(u) * options.size > options.speed_zero * coordinate.scale:
         return False
-    return abs(state.a[i]) * coordinate.mass <= options.sleep * terms
+    return abs(a) * coordinate.mass <= options.sleep * terms
 
 
 @kernel
@@ -324,108 +326,97 @@ def find_sleepers(model, state, options, event, f):
         if state.grip[i] == STICK:
             touched[label[i]] = 1
     for i in range(n):
-        if touched[label[i]] == 0 or not _is_still(model, state, options, i, event.terms[i]):
-            _wake(state, label, label[i])
+        if touched[label[i]] == 0 or not _is_still(model.coordinates[i], state.u[i], state.a[i], options, event.terms[i]):
+            _wake(label, label[i], state.awake)
     for j in range(len(model.tables)):
         if _will_change(model, model.tables[j], state.clock.time):
-            _wake(state, label, label[model.tables[j].coordinate])
+            _wake(label, label[model.tables[j].coordinate], state.awake)
     for i in range(n):
         if model.coordinates[i].driven:
-            _wake(state, label, label[i])
+            _wake(label, label[i], state.awake)
     for i in range(n):
         if state.awake[i] == 0:
             state.u[i], state.a[i] = 0.0, 0.0
 
 
 @kernel
-def is_at_rest(model, state, b):
+def is_at_rest(model, awake, b):
     """True for fixed bodies and bodies asleep whose carrier, if any, is asleep as well."""
     body = model.bodies[b]
-    if body.first >= 0 and state.awake[body.first]:
+    if body.first >= 0 and awake[body.first]:
         return False
-    return body.carrier < 0 or state.awake[model.bodies[body.carrier].first] == 0
+    return body.carrier < 0 or awake[model.bodies[body.carrier].first] == 0
 
 
 @kernel
-def _wake(state, label, group):
+def _wake(label, group, out_awake):
     for i in range(len(label)):
         if label[i] == group:
-            state.awake[i] = 1
+            out_awake[i] = 1
 
 
 NORMAL, TANGENTIAL, EXTENT, PARADOX = range(MONITORS)
 
 
 @kernel
-def bearing_monitor(model, state, options, j, smooth):
-    """Of coordinate j at the state being evaluated; its grip holds while it is positive."""
+def bearing_monitor(model, grip, lenience, options, j, smooth):
+    """Of coordinate j, awake, at the state being evaluated; its grip holds while it is positive."""
     coordinate = model.coordinates[j]
-    if state.grip[j] == OPEN or state.awake[j] == 0:
+    if grip == OPEN:
         return 1.0
-    if state.grip[j] == STICK:
-        return coordinate.coulomb - abs(smooth.load[j]) + state.now.lenience * options.force_zero * smooth.terms[j]
-    slack = 0.5 * state.now.lenience * options.speed_zero / options.size * coordinate.scale
-    return state.grip[j] * smooth.y[len(model.coordinates) + j] + slack
+    if grip == STICK:
+        return coordinate.coulomb - abs(smooth.load[j]) + lenience * options.force_zero * smooth.terms[j]
+    slack = 0.5 * lenience * options.speed_zero / options.size * coordinate.scale
+    return grip * smooth.y[len(model.coordinates) + j] + slack
 
 
 @kernel
-def normal_margin(work, i, zero):
+def normal_margin(system, i, zero):
     """Normal force of contact i in the modes solved, with the share `zero` of its terms on top; not positive where it pulls."""
-    normal = work.force[2 * i]
-    if normal == 0.0 and work.size[2 * i] == 0.0:
+    normal = system.force[2 * i]
+    if normal == 0.0 and system.size[2 * i] == 0.0:
         return 1.0  # nothing acts on this gap: touching bodies that travel together without a force
-    return normal + zero * work.size[2 * i] / work.G[2 * i, 2 * i]
+    return normal + zero * system.size[2 * i] / system.G[2 * i, 2 * i]
 
 
 @kernel
-def grip_left(friction, work, i, zero):
+def grip_left(friction, system, i, zero):
     """How far the friction force of contact i, which sticks, is from its bound, with the share `zero` of its terms on top."""
-    normal = work.force[2 * i]
-    if normal == 0.0 and work.size[2 * i] == 0.0:
+    normal = system.force[2 * i]
+    if normal == 0.0 and system.size[2 * i] == 0.0:
         return 1.0
-    slack = zero * work.size[2 * i] / work.G[2 * i, 2 * i]
-    return friction * normal - abs(work.force[2 * i + 1]) + slack
+    slack = zero * system.size[2 * i] / system.G[2 * i, 2 * i]
+    return friction * normal - abs(system.force[2 * i + 1]) + slack
 
 
 @kernel
-def _tangential_monitor(model, state, options, i, work, closed):
-    k = closed.ids[i]
-    friction = model.laws[model.contacts[k].group].friction
+def _tangential_monitor(friction, mode, slip, lenience, options, i, system):
     if friction == 0.0:
         return 1.0
-    if state.mode[k] == STICK:
-        return grip_left(friction, work, i, state.now.lenience * options.force_zero)
+    if mode == STICK:
+        return grip_left(friction, system, i, lenience * options.force_zero)
     # A slip that counted as none may run against the mode decided: it ends only beyond what counts as none.
-    return state.mode[k] * closed.kin[i].gT_dot + state.now.lenience * SLIP_SLACK * options.speed_zero
+    return mode * slip + lenience * SLIP_SLACK * options.speed_zero
 
 
 @hot_kernel
-def _watch(model, state, options, first, m, work, smooth):
-    """Set the monitors of an island's m contacts, the first of them at place `first` of `state.active`; returns the smallest.
+def _watch(mode, lenience, options, m, system, modes, closed, out_monitors):
+    """Set the monitors of an island's m contacts, `out_monitors[MONITORS * row + kind]`; returns the smallest.
 
-    Code MONITORS * place + kind; the mode holds while all are positive.
+    The mode holds while all are positive.
     """
-    closed, values = smooth.closed, smooth.monitors
     smallest = math.inf
     for i in range(m):
-        code = MONITORS * (first + i)
-        values[code + NORMAL] = normal_margin(work, i, state.now.lenience * options.force_zero)
-        values[code + TANGENTIAL] = _tangential_monitor(model, state, options, i, work, closed)
-        values[code + EXTENT] = closed.kin[i].margin + 2.0 * options.extent
-        values[code + PARADOX] = -1.0 if is_paradox(work, m, i, PAINLEVE_WATCHED * PAINLEVE) else 1.0
+        code, kin, k = MONITORS * i, closed.kin[i], closed.ids[i]
+        slides_into_jam = modes.unknown[i] < 0 and jams(system.G, modes.drag[i], m, i, PAINLEVE_WATCHED * PAINLEVE)
+        out_monitors[code + NORMAL] = normal_margin(system, i, lenience * options.force_zero)
+        out_monitors[code + TANGENTIAL] = _tangential_monitor(
+            modes.friction[i], mode[k], kin.gT_dot, lenience, options, i, system
+        )
+        out_monitors[code + EXTENT] = kin.margin + 2.0 * options.extent
+        out_monitors[code + PARADOX] = -1.0 if slides_into_jam else 1.0
         for kind in range(MONITORS):
-            smallest = min(smallest, values[code + kind])
-    return smallest
-
-
-@kernel
-def _watch_bearings(model, state, options, smooth):
-    """Set the monitors of the bearings: one for each coordinate, codes after those of the contacts; returns the smallest."""
-    smallest = math.inf
-    code = MONITORS * state.now.awake_contacts
-    for j in range(len(model.coordinates)):
-        smooth.monitors[code + j] = bearing_monitor(model, state, options, j, smooth)
-        smallest = min(smallest, smooth.monitors[code + j])
+            smallest = min(smallest, out_monitors[code + kind])
     return smallest
 
 
@@ -433,7 +424,7 @@ def _watch_bearings(model, state, options, smooth):
 def engage(model, state, smooth):
     """Find the bodies that the active contacts join, the only ones whose places matter while the modes last."""
     smooth.engaged[:] = 0
-    for i in range(state.now.awake_contacts):
+    for i in range(state.instant.awake_contacts):
         contact = model.contacts[state.active[i]]
         smooth.engaged[model.primitives[contact.a].body] = 1
         smooth.engaged[model.primitives[contact.b].body] = 1
@@ -441,34 +432,40 @@ def engage(model, state, smooth):
 
 @kernel
 def motion(model, state, options, t, work, smooth):
-    """dy/dt of `smooth.y` = (q, u, sums) at time t into `smooth.dy`; returns the smallest monitor.
+    """dy/dt of `smooth.y` = (q, u, sums) at time t (s) into `smooth.dy`; returns the smallest monitor.
 
-    `smooth.engaged` must be that of the active contacts; `work.inverse` is given.
+    `smooth.engaged` must be that of the active contacts; `work.system.inverse` is given. Code of the monitors: MONITORS * place
+    in `state.active` + kind; behind those of all contacts one for each coordinate with its bearing. Of `state` only the count
+    of evaluations is written.
     """
+    system, modes, instant = work.system, work.modes, state.instant
     n = len(model.coordinates)
     q, u = smooth.y[:n], smooth.y[n : 2 * n]
     closed, out = smooth.closed, smooth.dy
-    forces(model, t, q, u, work.h)
-    add_drag(model, state.grip, work.h)
+    forces(model, t, q, u, system.h)
+    add_drag(model, state.grip, system.h)
     for b in range(len(model.bodies)):
         if smooth.engaged[b]:
             place_body(model, b, q, u, smooth.pose)
     for i in range(n):
-        out[i], out[n + i] = u[i], own_acceleration(model, work, i)
-        smooth.load[i], smooth.terms[i] = work.h[i], abs(work.h[i])
+        out[i], out[n + i] = u[i], own_acceleration(model, system, i)
+        smooth.load[i], smooth.terms[i] = system.h[i], abs(system.h[i])
     smallest, friction, driven, first = math.inf, 0.0, 0.0, 0
-    while first < state.now.awake_contacts:
+    while first < instant.awake_contacts:
         m = place_contacts(model, state.active, first, state.upto[first], smooth.pose, closed)
-        solve_mode(model, closed, m, state.mode, state.now.lenience, work)
-        apply(closed, m, work.force, work.inverse, out[n : 2 * n])
-        add_loads(closed, m, work.force, state.grip, smooth.load, smooth.terms)
-        driven += drive_through_contacts(model, closed, m, work.force, u)
+        solve_mode(model, closed, m, state.mode, instant.lenience, system, modes)
+        apply(closed, m, system.force, system.inverse, out[n : 2 * n])
+        add_loads(closed, m, system.force, state.grip, smooth.load, smooth.terms)
+        driven += drive_through_contacts(model, closed, m, system.force, u)
         for i in range(m):
-            friction -= work.force[2 * i + 1] * closed.kin[i].gT_dot
-        smallest = min(smallest, _watch(model, state, options, first, m, work, smooth))
+            friction -= system.force[2 * i + 1] * closed.kin[i].gT_dot
+        monitors = smooth.monitors[MONITORS * first :]
+        smallest = min(smallest, _watch(state.mode, instant.lenience, options, m, system, modes, closed, monitors))
         first += m
-    smallest = min(smallest, _watch_bearings(model, state, options, smooth))
     for i in range(n):
+        monitor = bearing_monitor(model, state.grip[i], instant.lenience, options, i, smooth) if state.awake[i] else 1.0
+        smooth.monitors[MONITORS * instant.awake_contacts + i] = monitor
+        smallest = min(smallest, monitor)
         if state.awake[i] == 0:
             out[n + i] = 0.0
     out[2 * n] = drive_power(model, t, q, u) + driven

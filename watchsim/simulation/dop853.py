@@ -282,17 +282,17 @@ def dense_value(step, i, tau):
 
 
 @hot_kernel
-def coordinate_within(model, state, step, i, tau):
+def coordinate_within(model, step, i, tau):
     """Coordinate i and its velocity at time tau after the start of the step."""
     if step.span.kind == FLIGHT:
-        if state.awake[i] == 0:
+        if step.awake[i] == 0:
             return step.q[i], 0.0
-        return flow(model.coordinates[i], state.grip[i], step.q[i], step.u[i], tau)
+        return flow(model.coordinates[i], step.grip[i], step.q[i], step.u[i], tau)
     n = len(model.coordinates)
     return dense_value(step, i, tau), dense_value(step, n + i, tau)
 
 
 @kernel
-def flight_acceleration(model, state, i, q, u):
+def flight_acceleration(model, step, i, q, u):
     """q'' of coordinate i during a flight."""
-    return acceleration(model.coordinates[i], state.grip[i], q, u) if state.awake[i] else 0.0
+    return acceleration(model.coordinates[i], step.grip[i], q, u) if step.awake[i] else 0.0

@@ -14,9 +14,8 @@ from watchsim.contact.cell_lookup import LISTED, UNKNOWN, candidate, candidates,
 from watchsim.contact.gaps import OPEN, contact_kinematics, normal_gap, placed_gap, point_of
 from watchsim.jit import hot_kernel, kernel
 from watchsim.model import FIXED, FREE, LINE, PIVOT, SLIDE
-from watchsim.simulation.closed_contacts import is_beside_active, room_beside_active
+from watchsim.simulation.closed_contacts import has_one_way, is_beside_active, is_immovable, room_beside_active
 from watchsim.simulation.coupled_motion import is_at_rest
-from watchsim.simulation.events import has_one_way, is_immovable
 from watchsim.simulation.scratch import request_cell
 from watchsim.simulation.state import NO_CONTACT
 from watchsim.simulation.step_path import acceleration_on_path, body_on_path, jerk_bound
@@ -25,10 +24,9 @@ from watchsim.tolerances import FINE_LOOK, IMMOVABLE, NEAR_POINTS, NEIGHBOUR_STR
 # From which gap on does a contact close, where faces too flat to count have let one body sink into the other?
 #
 # Where two bodies move past each other in one direction only, faces that lie along it take no part in the motion
-# (events/immovable.py), and what they rise the bodies sink in. The next face, which may rise more, is then met at its joint
-# with
-# a gap that is already negative. It closes there as it would with a gap of zero (docs/theory/method.md 2.6). Faces met so have
-# a concave joint: past a convex one the next face falls away.
+# (`is_immovable` in closed_contacts.py), and what they rise the bodies sink in. The next face, which may rise more, is then met
+# at its joint with a gap that is already negative. It closes there as it would with a gap of zero (docs/theory/method.md 2.6).
+# Faces met so have a concave joint: past a convex one the next face falls away.
 
 
 @kernel
@@ -183,38 +181,38 @@ def next_stretch(model, options, k, left, step, path):
 
 
 @kernel
-def _material_point(model, state, step, b, rx, ry, left, tau, path):
+def _material_point(model, step, b, rx, ry, left, tau, path):
     """(vx, vy, ax, ay, bound of the third derivative for `left` s) of the point of body b at (rx, ry) from its origin."""
     body, pose = model.bodies[b], path.pose[b]
     i = body.first
     if body.motion == SLIDE:
-        a = body.ratio * acceleration_on_path(model, state, step, i, tau, path)
-        return pose.vx, pose.vy, a * body.axis_x, a * body.axis_y, abs(body.ratio) * jerk_bound(model, state, step, i)
+        a = body.ratio * acceleration_on_path(model, step, i, tau, path)
+        return pose.vx, pose.vy, a * body.axis_x, a * body.axis_y, abs(body.ratio) * jerk_bound(model, step, i)
     if body.motion == FIXED:
         return 0.0, 0.0, 0.0, 0.0, 0.0
     turn = i if body.motion == PIVOT else i + 2
-    w, twist = pose.w, body.ratio * acceleration_on_path(model, state, step, turn, tau, path)
+    w, twist = pose.w, body.ratio * acceleration_on_path(model, step, turn, tau, path)
     ax, ay, jerk = -twist * ry - w * w * rx, twist * rx - w * w * ry, 0.0
     if body.motion == FREE:
-        ax += acceleration_on_path(model, state, step, i, tau, path)
-        ay += acceleration_on_path(model, state, step, i + 1, tau, path)
-        jerk = jerk_bound(model, state, step, i) + jerk_bound(model, state, step, i + 1)
+        ax += acceleration_on_path(model, step, i, tau, path)
+        ay += acceleration_on_path(model, step, i + 1, tau, path)
+        jerk = jerk_bound(model, step, i) + jerk_bound(model, step, i + 1)
     bound = abs(body.ratio) * step.bound[turn]
     fastest = abs(w) + bound * left
-    change = abs(body.ratio) * jerk_bound(model, state, step, turn)
+    change = abs(body.ratio) * jerk_bound(model, step, turn)
     jerk += (change + 3.0 * bound * fastest + fastest**3) * math.sqrt(rx * rx + ry * ry)
     return pose.vx - w * ry, pose.vy + w * rx, ax, ay, jerk
 
 
 @kernel
-def _points_apart(model, state, k, left, tau, step, path):
+def _points_apart(model, k, left, tau, step, path):
     """(vx, vy, ax, ay, bound of how a changes) of the point of A at the centre of its circle against that of B there."""
     contact = model.contacts[k]
     a, b = model.primitives[contact.a], model.primitives[contact.b]
     pa, pb = path.pose[a.body], path.pose[b.body]
     rx, ry = point_of(pa, a.x, a.y)
-    one = _material_point(model, state, step, a.body, rx, ry, left, tau, path)
-    two = _material_point(model, state, step, b.body, rx + pa.x - pb.x, ry + pa.y - pb.y, left, tau, path)
+    one = _material_point(model, step, a.body, rx, ry, left, tau, path)
+    two = _material_point(model, step, b.body, rx + pa.x - pb.x, ry + pa.y - pb.y, left, tau, path)
     return one[0] - two[0], one[1] - two[1], one[2] - two[2], one[3] - two[3], one[4] + two[4]
 
 
@@ -255,19 +253,19 @@ def may_last(room, rate, time):
 
 
 @kernel
-def time_still(model, state, k, room, left, tau, step, path):
+def time_still(model, k, room, left, tau, step, path):
     """A time up to `left` seconds in which the place of contact k moves by no more than `room` on either body, or 0.
 
     The bodies must stand in `path` where they are at `tau`. Not for carried bodies: 0.
     """
     if _is_carried(model, k):
         return 0.0
-    vx, vy, ax, ay, jerk = _points_apart(model, state, k, left, tau, step, path)
+    vx, vy, ax, ay, jerk = _points_apart(model, k, left, tau, step, path)
     return _time_for(room, math.sqrt(vx * vx + vy * vy), math.sqrt(ax * ax + ay * ay), jerk, left)
 
 
 @kernel
-def time_apart(model, state, k, room, left, tau, step, path):
+def time_apart(model, k, room, left, tau, step, path):
     """A time up to `left` seconds within which contact k, on the free side with this much room, cannot close; or 0.
 
     As in `time_still`. With x the way between the two points and e the normal, which turns with B, the gap falls by no more
@@ -277,7 +275,7 @@ def time_apart(model, state, k, room, left, tau, step, path):
     if b.side < 0.0 or _is_carried(model, k):
         return 0.0
     here = normal_gap(model, k, path.pose)
-    vx, vy, ax, ay, jerk = _points_apart(model, state, k, left, tau, step, path)
+    vx, vy, ax, ay, jerk = _points_apart(model, k, left, tau, step, path)
     turn = _fastest_turn(model, b.body, left, step, path)
     jerk = jerk * (1.0 + turn * left) + 3.0 * turn * math.sqrt(ax * ax + ay * ay)
     push = max(-(here.nx * ax + here.ny * ay), 0.0) + 2.0 * turn * math.sqrt(vx * vx + vy * vy)
@@ -385,11 +383,11 @@ def time_immovable(model, options, k, rate, bend, path):
 
 
 @kernel
-def time_held(model, state, options, k, tau, rate, bounds, path):
+def time_held(model, active, in_force, options, k, tau, rate, bounds, path):
     """For how long a contact that is due need not close: 0 if it closes now. `bounds`: closing, bend, swing, distance."""
     closing, bend, swing, distance = bounds
     # Where a smooth outline goes on, its next piece has no gap either, and closes only when its turn comes.
-    way, turn = room_beside_active(model, state, options, k, path.pose)
+    way, turn = room_beside_active(model, active, in_force, options, k, path.pose)
     if way < 0.0:
         wait = time_immovable(model, options, k, rate, bend, path)
         return max(wait, TIME_ROUNDING * tau) if wait > 0.0 else 0.0
@@ -446,16 +444,15 @@ MAX_EVALUATIONS = 16  # at one contact, before one that could close earlier has 
 
 
 @kernel
-def _place(model, state, bodies, tau, step, path):
+def _place(model, bodies, tau, step, path):
     """Bring two bodies to time tau of the step."""
-    body_on_path(model, state, step, bodies[0], tau, path)
-    body_on_path(model, state, step, bodies[1], tau, path)
+    body_on_path(model, step, bodies[0], tau, path)
+    body_on_path(model, step, bodies[1], tau, path)
 
 
 @kernel
-def _look(model, state, options, k, anew, level, path):
+def _look(model, options, k, anew, level, path):
     """(gap of contact k above its level, rate, how far it is inside either primitive, level, which is found `anew` or kept)."""
-    state.counts.gap_evaluations += 1
     gap, rate, inside_a, inside_b = placed_gap(model, k, path.pose)
     if anew:
         level = sunk_level(model, options, k, gap, inside_b, path)
@@ -463,29 +460,31 @@ def _look(model, state, options, k, anew, level, path):
 
 
 @kernel
-def crossing(model, state, options, k, start, end, step, path):
-    """(time, closes?): open contact k closes at that time within [start, end), or does not until then.
+def crossing(model, active, in_force, options, k, span, step, path, out_counts):
+    """(time, closes?): open contact k closes at that time within `span` (s), or does not until then.
 
-    After `LOOKS_AT_ONCE` looks the time may be short of `end`.
+    After `MAX_EVALUATIONS` looks the time may be short of `end`.
     """
-    contact = model.contacts[k]
+    contact, (start, end) = model.contacts[k], span
     body_a, body_b = model.primitives[contact.a].body, model.primitives[contact.b].body
-    _place(model, state, (body_a, body_b), start, step, path)
+    _place(model, (body_a, body_b), start, step, path)
     length, closing, bend, swing = next_stretch(model, options, k, end - start, step, path)
     if closing == 0.0 and length == end - start:
         return end, False
     tau, stretch = start, start + length
     # `outside`: on the free side; `clear`: has been further than rounding from it since. Gaps count from `level`.
     fresh, outside, clear, beside, level = True, True, False, 0.0, 0.0
-    last_look = state.counts.gap_evaluations + MAX_EVALUATIONS
-    while tau < end and state.counts.gap_evaluations < last_look:
+    for _ in range(MAX_EVALUATIONS):
+        if tau >= end:
+            break
+        out_counts.gap_evaluations += 1
         if tau > start:
-            _place(model, state, (body_a, body_b), tau, step, path)
+            _place(model, (body_a, body_b), tau, step, path)
         if tau >= stretch:
             length, closing, bend, swing = next_stretch(model, options, k, end - tau, step, path)
             stretch = tau + length
         anew = fresh or beside > 0.0  # what lay beside its primitives was no contact until now
-        gap, rate, inside_a, inside_b, level = _look(model, state, options, k, anew, level, path)
+        gap, rate, inside_a, inside_b, level = _look(model, options, k, anew, level, path)
         distance = centre_distance(model, k, path.pose)
         if fresh or not outside:
             outside, clear = gap >= -options.gap_zero, beside > 0.0
@@ -500,10 +499,10 @@ def crossing(model, state, options, k, start, end, step, path):
             wait = max(beside, options.gap_zero / closing)
             if wait < FINE_LOOK * (end - tau):
                 way_in = -inside_b if model.primitives[contact.b].kind == LINE else 0.0
-                wait = max(wait, time_still(model, state, k, max(options.gap_zero, way_in), end - tau, tau, step, path))
+                wait = max(wait, time_still(model, k, max(options.gap_zero, way_in), end - tau, tau, step, path))
             tau += max(wait, TIME_ROUNDING * tau)
         elif is_due(gap, rate, outside, clear, options):
-            wait = time_held(model, state, options, k, tau, rate, (closing, bend, swing, distance), path)
+            wait = time_held(model, active, in_force, options, k, tau, rate, (closing, bend, swing, distance), path)
             if wait == 0.0:
                 rest = time_to_touch(gap, rate, (closing, bend, distance), options) if outside and clear else 0.0
                 time = tau + rest if tau + rest < end else tau
@@ -515,7 +514,7 @@ def crossing(model, state, options, k, start, end, step, path):
             if outside and safe < FINE_LOOK * (end - tau):
                 room = room_outside(gap, rate, options)
                 if may_last(room, rate, safe):
-                    safe = max(safe, time_apart(model, state, k, room, end - tau, tau, step, path))
+                    safe = max(safe, time_apart(model, k, room, end - tau, tau, step, path))
             safe = max(safe, time_immovable(model, options, k, rate, bend, path) if near and not leaving else 0.0)
             # Beside its primitives the gap may pass through zero: which side it is on afterwards is found anew.
             fresh = beside > safe
@@ -527,14 +526,13 @@ def crossing(model, state, options, k, start, end, step, path):
 
 
 @hot_kernel
-def _stays_open_for(model, state, options, k, length, first, bounds, path):
+def _stays_open_for(model, options, k, length, first, bounds, path):
     """A time in which contact k cannot close, from one look at the current poses; infinity if it is `length` or more.
 
     `bounds` are the `body_bounds` of the pair's bodies, of body `first` and of the other one.
     """
     here = normal_gap(model, k, path.pose)
     gap, rate = here.gap, here.rate
-    state.counts.gap_evaluations += 1
     if -options.behind <= gap <= options.gap_zero or sunk_level(model, options, k, gap, 0.0, path) < 0.0:
         return 0.0
     # Behind its primitive a contact must come out before it can close.
@@ -555,7 +553,7 @@ def _list(model, cells, state, options, p, span, count, step, path):
     With them when the pair enters its next cell. `span`: the time at which it is in this cell, and the end of the search.
     """
     pair, waiting, tau, end = model.pairs[p], path.waiting, span[0], span[1]
-    _place(model, state, (pair.a, pair.b), tau, step, path)
+    _place(model, (pair.a, pair.b), tau, step, path)
     until = min(end, tau + time_in_cell(model, p, path.q, path.u, step.bound))
     how, start, number = candidates(model, cells, p, path.q)
     if how == UNKNOWN:
@@ -565,9 +563,10 @@ def _list(model, cells, state, options, p, span, count, step, path):
     bounds = (body_bounds(model, pair.a, until - tau, step, path), body_bounds(model, pair.b, until - tau, step, path))
     for place in range(start, start + number):
         k = candidate(model, cells, how, place)
-        if state.mode[k] != OPEN or is_beside_active(model, state, k):
+        if state.mode[k] != OPEN or is_beside_active(model, state.active, state.instant.awake_contacts, k):
             continue
-        stays = tau + _stays_open_for(model, state, options, k, until - tau, pair.a, bounds, path)
+        state.counts.gap_evaluations += 1
+        stays = tau + _stays_open_for(model, options, k, until - tau, pair.a, bounds, path)
         if stays < until:
             count = put(waiting, count, k, p, (tau, until, stays))
     if until < end:
@@ -583,9 +582,9 @@ def first_touch(model, cells, state, options, end, scratch):
     close first is looked at next: what lies far off is not searched beyond the first closing, however long the step.
     """
     best, who, step, path = end, NO_CONTACT, scratch.step, scratch.path
-    count, known = 0, True
+    count, known, in_force = 0, True, state.instant.awake_contacts + state.instant.sleeping_contacts
     for p in range(len(model.pairs)):
-        if is_at_rest(model, state, model.pairs[p].a) and is_at_rest(model, state, model.pairs[p].b):
+        if is_at_rest(model, state.awake, model.pairs[p].a) and is_at_rest(model, state.awake, model.pairs[p].b):
             continue
         known, count = _list(model, cells, state, options, p, (0.0, end), count, step, path)
         if not known:
@@ -602,7 +601,7 @@ def first_touch(model, cells, state, options, end, scratch):
                 return False, 0.0, NO_CONTACT
             continue
         until = min(until, best)
-        time, closes = crossing(model, state, options, k, start, until, step, path)
+        time, closes = crossing(model, state.active, in_force, options, k, (start, until), step, path, state.counts)
         if closes:
             best, who = time, k
         elif time < until:

@@ -28,13 +28,13 @@ NONE_FIRED = -1  # in the place of a monitor's code
 @kernel
 def _slack(model, state, options, code):
     """How far beyond zero velocity the monitors of slips and of moving bearings fire; the reversal is where it vanishes."""
-    j = code - MONITORS * state.now.awake_contacts
+    j = code - MONITORS * state.instant.awake_contacts
     if j >= 0:
         if state.grip[j] == STICK:
             return 0.0
-        return 0.5 * state.now.lenience * options.speed_zero / options.size * model.coordinates[j].scale
+        return 0.5 * state.instant.lenience * options.speed_zero / options.size * model.coordinates[j].scale
     slides = code % MONITORS == TANGENTIAL and state.mode[state.active[code // MONITORS]] != STICK
-    return state.now.lenience * SLIP_SLACK * options.speed_zero if slides else 0.0
+    return state.instant.lenience * SLIP_SLACK * options.speed_zero if slides else 0.0
 
 
 @kernel
@@ -83,7 +83,7 @@ def first_leave(model, state, options, smallest, scratch):
     if smallest > 0.0:
         return math.inf, NONE_FIRED
     length, smooth = scratch.step.span.length, scratch.smooth
-    codes = MONITORS * state.now.awake_contacts + len(model.coordinates)
+    codes = MONITORS * state.instant.awake_contacts + len(model.coordinates)
     for code in range(codes):
         if smooth.before[code] <= 0.0:
             return 0.0, code
@@ -102,7 +102,7 @@ def _first_before(model, state, options, before, tau, scratch):
     """(time, code of the monitor): the first to end between `before`, where all are positive, and tau, where some are not."""
     best, code, left = _earliest(model, state, options, before, tau, scratch)
     for _ in range(SAMPLES):
-        if not (left and before < best and state.now.awake_contacts > 1):
+        if not (left and before < best and state.instant.awake_contacts > 1):
             break
         tau = _while_within(state, options, before, best, scratch)
         if _evaluate(model, state, options, tau, scratch) > 0.0:
@@ -115,7 +115,7 @@ def _first_before(model, state, options, before, tau, scratch):
 def _while_within(state, options, before, best, scratch):
     """A time just before `best`, at which the contacts that have left by then were within their primitives."""
     nearest = math.inf
-    for j in range(state.now.awake_contacts):
+    for j in range(state.instant.awake_contacts):
         nearest = min(nearest, scratch.smooth.before[MONITORS * j + EXTENT])
     return best - min(WITHIN_ENDS * options.extent / nearest, 0.5) * (best - before)
 
@@ -124,11 +124,11 @@ def _while_within(state, options, before, best, scratch):
 def _earliest(model, state, options, before, tau, scratch):
     """The earliest root among the monitors that fire at tau and not `before`; its code; had a contact left by tau?"""
     smooth, fired, left = scratch.smooth, 0, False
-    for code in range(MONITORS * state.now.awake_contacts + len(model.coordinates)):
+    for code in range(MONITORS * state.instant.awake_contacts + len(model.coordinates)):
         if smooth.monitors[code] <= 0.0:
             smooth.fired[fired] = code
             fired += 1
-            left = left or (code < MONITORS * state.now.awake_contacts and code % MONITORS == EXTENT)
+            left = left or (code < MONITORS * state.instant.awake_contacts and code % MONITORS == EXTENT)
     best, first = tau, smooth.fired[0]
     for j in range(fired):
         if j > 0:
@@ -246,7 +246,7 @@ def coupled_step(model, state, options, longest, scratch):
     n = len(model.coordinates)
     step.span.kind, step.span.start = COUPLED, state.clock.time
     for i in range(n):
-        step.q[i], step.u[i] = state.q[i], state.u[i]
+        step.q[i], step.u[i], step.awake[i], step.grip[i] = state.q[i], state.u[i], state.awake[i], state.grip[i]
         step.y0[i], step.y0[n + i] = state.q[i], state.u[i]
     for i in range(SUMS):
         step.y0[2 * n + i] = 0.0

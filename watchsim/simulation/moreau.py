@@ -36,7 +36,7 @@ from watchsim.dynamics.forces import (
 )
 from watchsim.jit import by_reference, entry, inlined, kernel
 from watchsim.model import CellsRef, Model, ModelRef, blank
-from watchsim.simulation.events import is_immovable
+from watchsim.simulation.closed_contacts import is_immovable
 from watchsim.simulation.moreau_percussions import (
     Laws,
     LawsRef,
@@ -376,7 +376,7 @@ def _keep_of(model, state, h, spring, ends, record):
         if state.side_u[i] != 0:
             tau = h * fast / (fast - last) if fast * last < 0.0 else 0.0
             state.clock.time = start + tau
-            keep_event(state, record, EventKind.TURN, -1, body, before + 0.5 * fast * tau)
+            keep_event(record, state.clock, state.counts, EventKind.TURN, -1, body, before + 0.5 * fast * tau)
         state.side_u[i] = side
     way, side = before - rest, sign(after - rest)
     if side != 0 and side != state.side_q[i]:
@@ -386,7 +386,7 @@ def _keep_of(model, state, h, spring, ends, record):
             tau = -doubled / bend if way * fast > 0.0 else -2.0 * way / doubled
             tau = min(h, max(0.0, tau))
             state.clock.time = start + tau
-            keep_event(state, record, EventKind.CROSS, -1, body, fast + bend * tau)
+            keep_event(record, state.clock, state.counts, EventKind.CROSS, -1, body, fast + bend * tau)
         state.side_q[i] = side
     state.clock.time = start
 
@@ -399,8 +399,8 @@ def _step(model, cells, state, options, h, whole, work, record):
         return code
     jump = stop_approaches(model, state, options, m, work, record)
     if jump:
-        keep_row(state, record, state.clock.time, state.q, state.u, state.a)
-        keep_row(state, record, state.clock.time, state.q, work.u, state.a)
+        keep_row(record, state.clock.time, state.q, state.u, state.a)
+        keep_row(record, state.clock.time, state.q, work.u, state.a)
     act(model, state, m, h, work, state.u)
     copy(state.q, work.start)
     move(model, state, options, m, h, work, state.u)
@@ -443,9 +443,9 @@ def _loop(model, cells, state, options, until, pace, work, record):
         events = EVENTS_PER_CONTACT * len(work.closed.ids)
         if record.used.rows + ROWS_PER_STEP >= len(record.rows) or record.used.events + events >= len(record.events):
             return Stop.BUFFER_FULL
-        if state.now.event_waits == 1:
-            state.now.event_waits = 0
-            keep_row(state, record, 0.0, state.q, state.u, state.a)
+        if state.instant.event_waits == 1:
+            state.instant.event_waits = 0
+            keep_row(record, 0.0, state.q, state.u, state.a)
         left = until.end - state.clock.time
         if left <= 0.0:
             return Stop.DURATION
@@ -463,4 +463,4 @@ def _loop(model, cells, state, options, until, pace, work, record):
         # Rows at least so often; the last one always.
         if last or state.clock.time - work.kept.row_time >= pace.row * (1.0 - STEP_ROUNDING):
             work.kept.row_time = state.clock.time
-            keep_row(state, record, state.clock.time, state.q, state.u, state.a)
+            keep_row(record, state.clock.time, state.q, state.u, state.a)

@@ -18,9 +18,9 @@ from watchsim.dynamics.delassus import (
     copy,
     drive_through_contacts,
     inverse_mass,
-    size_class,
-    solve_small,
 )
+from watchsim.dynamics.friction import law_of, size_class
+from watchsim.dynamics.redundant import solve_small
 from watchsim.jit import by_reference, kernel
 from watchsim.model import PG1996, SHIFTED
 from watchsim.simulation.closed_contacts import kinetic_energy
@@ -271,16 +271,11 @@ def solve_percussions(state, m, bearings, work):
 
 
 @kernel
-def _law(model, work, i):
-    return model.laws[model.contacts[work.closed.ids[i]].group]
-
-
-@kernel
 def friction_cones(model, m, work):
     """Coulomb's law for all closed contacts."""
     for i in range(m):
         work.laws.low[i] = 0.0
-        cone(work.laws.ends, i, _law(model, work, i).friction)
+        cone(work.laws.ends, i, law_of(model, work.closed.ids[i]).friction)
 
 
 @kernel
@@ -330,7 +325,7 @@ def _keep_sliding(model, m, work):
         if slip == 0.0 or laws.G[N, T] ** 2 <= (1.0 - PARALLEL) * laws.G[N, N] * laws.G[T, T]:
             continue
         if abs(slip - laws.G[N, T] / laws.G[N, N] * work.rates[N]) <= NUDGE * abs(slip):
-            one_way = -_law(model, work, i).friction if slip > 0.0 else _law(model, work, i).friction
+            one_way = -law_of(model, work.closed.ids[i]).friction if slip > 0.0 else law_of(model, work.closed.ids[i]).friction
             laws.ends[i, 1], laws.ends[i, 3] = one_way, one_way
 
 
@@ -343,7 +338,7 @@ def _expand(model, state, m, work):
         for column in range(2 * m):
             laws.b[row] += laws.G[row, column] * work.more[column]
     for i in range(m):
-        N, T, law = work.more[2 * i], work.more[2 * i + 1], _law(model, work, i)
+        N, T, law = work.more[2 * i], work.more[2 * i + 1], law_of(model, work.closed.ids[i])
         laws.low[i] = work.restitution[i] * N
         returned = law.nu * _expansion_ends(law, work.restitution[i], N, T, laws.ends, i)
         laws.P[2 * i], laws.P[2 * i + 1] = laws.low[i], 0.0
@@ -379,7 +374,7 @@ def stop_approaches(model, state, options, m, work, record):
     fastest = 0.0
     for i in range(m):
         fastest = max(fastest, -work.rates[2 * i])
-        work.restitution[i] = _law(model, work, i).restitution
+        work.restitution[i] = law_of(model, work.closed.ids[i]).restitution
     if fastest == 0.0:
         return False
     for i in range(len(work.u)):
@@ -414,7 +409,7 @@ def _write_impacts(state, options, m, work, record):
         lost = -0.5 * (P[N] * (before[N] + after[N]) + P[T] * (before[T] + after[T]))
         state.sums.impacts += lost
         if P[N] > 0.0 and before[N] < -options.accumulation_speed:
-            row = keep_event(state, record, EventKind.IMPACT, work.closed.ids[i], -1, before[N])
+            row = keep_event(record, state.clock, state.counts, EventKind.IMPACT, work.closed.ids[i], -1, before[N])
             event = record.events[row]
             event.impulse_normal, event.impulse_tangential, event.energy_lost = P[N], P[T], lost
             state.counts.impacts += 1

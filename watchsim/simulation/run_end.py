@@ -82,28 +82,28 @@ def failure_of(state: State, scratch: Scratch, pairs: Sequence[Pair]) -> dict[st
     level       of the problem: acceleration, compression or expansion
     contacts    bodies and primitives in words with contact number, mode, gap rate and slip; two rows of G each, N then T
     G, b        Delassus matrix and the accelerations or velocities of its rows without contact forces
-    reversed    rows of G and b that A and rhs have with the opposite sign (dynamics/handedness.py)
-    A, rhs      of y = A x + rhs in the scaling of dynamics/coulomb.py
+    reversed    rows of G and b that A and rhs have with the opposite sign (`friction_sign`)
+    A, rhs      of y = A x + rhs in the scaling of dynamics/friction.py
     """
-    work = scratch.work
-    m, elements, bearings = int(work.posed.contacts), int(work.posed.elements), int(work.posed.bearings)
-    level = Level(int(work.posed.level))
+    system, problem, last = scratch.work.system, scratch.work.problem, scratch.work.problem.last
+    m, elements, bearings, level = int(last.contacts), int(last.elements), int(last.bearings), Level(int(last.level))
+    b = system.b if level == Level.ACCELERATION else scratch.work.phases.rates
     closed = scratch.event.rest if level == Level.ACCELERATION else scratch.event.closed
     rows, n = 2 * m + bearings, m + 2 * elements
     return {
         "level": level.name.lower(),
-        "lemke_ended_with": LEMKE_ENDS[LcpOutcome(int(work.posed.lemke))],
+        "lemke_ended_with": LEMKE_ENDS[LcpOutcome(int(last.lemke))],
         "what_to_try": list(ADVICE),
         "t": float(state.clock.time),
         "q": state.q.tolist(),
         "u": state.u.tolist(),
         "contacts": [_contact(int(k), closed.kin[row], state, pairs) for row, k in enumerate(closed.ids[:m])],
-        "bearings": work.dry[:bearings].tolist(),
-        "G": work.G[:rows, :rows].tolist(),
-        "b": work.b[:rows].tolist(),
-        "reversed": np.flatnonzero(work.hand[:rows] < 0.0).tolist(),
-        "A": work.A[:n, :n].tolist(),
-        "rhs": work.rhs[:n].tolist(),
+        "bearings": problem.bearing[:bearings].tolist(),
+        "G": system.G[:rows, :rows].tolist(),
+        "b": b[:rows].tolist(),
+        "reversed": np.flatnonzero(problem.friction_sign[:rows] < 0.0).tolist(),
+        "A": problem.A[:n, :n].tolist(),
+        "rhs": problem.rhs[:n].tolist(),
     }
 
 
@@ -148,7 +148,7 @@ def unaccounted(energy: Mapping[str, Any]) -> str:
 
 def unexplained(state: State, pairs: Sequence[Pair]) -> str:
     """The contacts in force where velocities changed by more than impulses explain."""
-    ids = state.active[: state.now.awake_contacts].tolist()
+    ids = state.active[: state.instant.awake_contacts].tolist()
     touching = "in contact: " + "; ".join(str(pairs[k]) for k in ids[:MANY]) if ids else ""
     return ". ".join(filter(None, (touching, ADVICE_STOP_DETAILS)))
 

@@ -258,7 +258,7 @@ class Run:
 
     def worst_residual(self) -> NDArray[np.float64]:
         """(1,): the worst violation of a complementarity condition so far."""
-        return words_of(self.scratch.work.lcp.worst, float)
+        return words_of(self.scratch.work.problem.lcp.worst, float)
 
     def settings(self) -> dict[str, Any]:
         """What must be the same when a saved state is taken up; the natural step follows from the model."""

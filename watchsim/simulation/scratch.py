@@ -11,15 +11,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.contact.gaps import OPEN, STICK, Closed, ClosedRef, closed_contacts, poses
-from watchsim.dynamics.delassus import ContactWork, ContactWorkRef, contact_work
-from watchsim.dynamics.lcp import LcpWorkRef
+from watchsim.dynamics.contact_work import ContactWork, contact_work, contact_work_by_reference
 from watchsim.jit import by_reference, inlined, kernel
 from watchsim.model import Model, Records, blank, dtype_of, records
 from watchsim.simulation.state import EVENT_DTYPE, EventKind, room_for
 
-# How far is the loop to run, and where does it write what is kept?
-
 Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
+Modes = NDArray[np.int8]
+
+MONITORS = 4  # what is watched of each contact in force
+RECENT = 64  # events remembered for the case that time does not advance
+SUMS = 3  # integrated along with the motion: work in, damping, friction
+FLIGHT, COUPLED = 0, 1  # kinds of steps
 
 
 class Until:
@@ -63,9 +67,6 @@ def new_record(model: Model, rows: int, events: int, windows: Array) -> Record:
     return Record(np.zeros((rows, 1 + 3 * n)), np.zeros(events, EVENT_DTYPE).view(np.recarray), blank(Used), windows)
 
 
-# What is written down while the loop runs?
-
-
 @kernel
 def is_kept(record, t, length):
     """True if rows within `length` seconds after t lie in one of the windows."""
@@ -76,7 +77,7 @@ def is_kept(record, t, length):
 
 
 @kernel
-def keep_row(state, record, t, q, u, a):
+def keep_row(record, t, q, u, a):
     """Append a row unless t lies outside all windows."""
     if not is_kept(record, t, 0.0):
         return
@@ -91,42 +92,30 @@ def keep_row(state, record, t, q, u, a):
 
 
 @kernel
-def keep_event(state, record, kind, contact, body, value):
+def keep_event(record, clock, counts, kind, contact, body, value):
     """Append an event at the current time and return its row."""
     row = record.used.events
     event = record.events[row]
-    event.t, event.kind, event.contact, event.body, event.value = state.clock.time, kind, contact, body, value
+    event.t, event.kind, event.contact, event.body, event.value = clock.time, kind, contact, body, value
     event.impulse_normal, event.impulse_tangential, event.energy_lost = 0.0, 0.0, 0.0
     record.used.events = row + 1
-    state.counts.events += 1
+    counts.events += 1
     return row
 
 
 @kernel
-def keep_change(state, record, k, old):
+def keep_change(record, clock, counts, k, old, new):
     """Write down how contact k's mode changed."""
-    new = state.mode[k]
     if new == old:
         return
     if old == OPEN:
-        keep_event(state, record, EventKind.CLOSE, k, -1, float(new))
+        keep_event(record, clock, counts, EventKind.CLOSE, k, -1, float(new))
     elif new == OPEN:
-        keep_event(state, record, EventKind.OPEN, k, -1, 0.0)
+        keep_event(record, clock, counts, EventKind.OPEN, k, -1, 0.0)
     elif new == STICK:
-        keep_event(state, record, EventKind.STICK, k, -1, 0.0)
+        keep_event(record, clock, counts, EventKind.STICK, k, -1, 0.0)
     else:
-        keep_event(state, record, EventKind.SLIDE, k, -1, float(new))
-
-
-# Where does the event loop work? Room allocated once, by owner.
-
-Integers = NDArray[np.int64]
-Modes = NDArray[np.int8]
-
-MONITORS = 4  # what is watched of each contact in force
-RECENT = 64  # events remembered for the case that time does not advance
-SUMS = 3  # integrated along with the motion: work in, damping, friction
-FLIGHT, COUPLED = 0, 1  # kinds of steps
+        keep_event(record, clock, counts, EventKind.SLIDE, k, -1, float(new))
 
 
 class Span:
@@ -143,6 +132,8 @@ class Step(NamedTuple):
     span: Span
     q: Array
     u: Array
+    awake: Modes  # by coordinate, and its grip: those of the state, for the whole step
+    grip: Modes
     bound: Array  # bound of each |q''| over the step
     y0: Array  # q, u, sums
     y1: Array
@@ -163,12 +154,29 @@ class Smooth(NamedTuple):
     engaged: Modes  # by body: 1 if a contact in force touches it
     monitors: Array  # by code (coupled_motion.py)
     before: Array  # the same at an earlier time of the step, at first at its start
-    fired: Integers  # codes of those that are not positive (contact_mode_end.py)
+    fired: Integers  # codes of those that are not positive (integrator.py)
     load: Array  # force on each coordinate that dry friction holds
     terms: Array  # sum of the magnitudes it is made of
 
 
 SmoothRef = by_reference(Smooth, __name__)
+
+
+class Projection(NamedTuple):
+    """What takes back drift off the contacts in force (coupled_motion.py); positions in m, velocities in m/s."""
+
+    G: Array  # of the contacts whose drift is taken back
+    row: Integers  # of G, by row of A
+    wanted: Array  # scaled by `scale`: by how much a gap shall change
+    A: Array
+    change: Array  # right-hand side: by how much each row shall change
+    scale: Array  # see `solve_small`
+    order: Integers
+    x: Array
+    correction: Array  # what makes the change, by row of G: impulses, or for positions impulses times a second
+
+
+ProjectionRef = by_reference(Projection, __name__)
 
 
 class Waiting:
@@ -182,7 +190,7 @@ class Waiting:
 
 
 class Path(NamedTuple):
-    """Where bodies are within a step (step_path.py), and which contacts may close there (time_of_impact.py)."""
+    """Where bodies are within a step (step_path.py), and which contacts may close there (first_closing.py)."""
 
     q: Array
     u: Array
@@ -195,13 +203,14 @@ PathRef = by_reference(Path, __name__)
 
 
 class EventRoom(NamedTuple):
-    """The contacts closed at an event (after_event.py and what it calls)."""
+    """The contacts closed at an event (events.py and what it calls)."""
 
     pose: Any
     closed: Closed  # of one island
     rest: Closed  # those of them in I_N
-    pace: Array  # largest magnitude of each velocity at the instant being settled
-    zero: Array  # by row of `closed`: the gap rate that counts as zero, see zero_rates.py
+    peak_speed: Array  # largest magnitude of each velocity at this instant
+    zero: Array  # m/s, by row of `closed`: the gap rate that counts as zero
+    waits: Modes  # by row of `closed`: 1 if it may wait behind a parallel one
     label: Integers  # by coordinate: its island
     listed: Integers  # the closed contacts, by island
     upto: Integers  # by place in `listed`: the place behind the last contact of the same island
@@ -216,7 +225,7 @@ EventRoomRef = by_reference(EventRoom, __name__)
 
 
 class ImpactRoom(NamedTuple):
-    """One impact (collision.py) and the end of a chatter (chatter.py)."""
+    """One impact and the end of a chatter (impacts.py)."""
 
     restitution: Array  # by row of the closed contacts
     impulse: Array  # N and T by row
@@ -256,7 +265,7 @@ def request_cell(asked, p, q):
 
 
 class Ended:
-    """What ended the last steps, see `_note_end` in advance.py; the newest overwrites the oldest."""
+    """What ended the last steps, see `_note_end` in event_loop.py; the newest overwrites the oldest."""
 
     number: int  # of steps ended so far
     by: Annotated[Integers, RECENT]
@@ -267,6 +276,7 @@ class Scratch(NamedTuple):
 
     step: Step
     work: ContactWork
+    projection: Projection
     smooth: Smooth
     path: Path
     event: EventRoom
@@ -284,7 +294,8 @@ def scratch_by_reference(scratch):
     smooth, path, event = scratch.smooth, scratch.path, scratch.event
     return ScratchRef(
         StepRef(*scratch.step),
-        ContactWorkRef(LcpWorkRef(*scratch.work.lcp), *scratch.work[1:]),
+        contact_work_by_reference(scratch.work),
+        ProjectionRef(*scratch.projection),
         SmoothRef(smooth.y, smooth.dy, smooth.pose, ClosedRef(*smooth.closed), *smooth[4:]),
         PathRef(path.q, path.u, path.pose, ClosedRef(*path.probe), *path[4:]),
         EventRoomRef(event.pose, ClosedRef(*event.closed), ClosedRef(*event.rest), *event[3:]),
@@ -301,9 +312,16 @@ def asked_of(coordinates: int) -> Asked:
 
 def _step_room(n: int) -> Step:
     width = 2 * n + SUMS
-    vectors = {name: np.zeros(n) for name in ("q", "u", "bound")}
-    wide = {name: np.zeros(width) for name in ("y0", "y1")}
-    return Step(span=blank(Span), stages=np.zeros((16, width)), dense=np.zeros((7, width)), **vectors, **wide)
+    parts: dict[str, Any] = {name: np.zeros(n) for name in ("q", "u", "bound")}
+    parts |= {name: np.zeros(n, np.int8) for name in ("awake", "grip")} | {name: np.zeros(width) for name in ("y0", "y1")}
+    return Step(span=blank(Span), stages=np.zeros((16, width)), dense=np.zeros((7, width)), **parts)
+
+
+def _projection_room(n: int, room: int) -> Projection:
+    rows = 2 * room + n
+    parts: dict[str, Any] = {name: np.zeros(rows) for name in ("wanted", "change", "scale", "x", "correction")}
+    parts |= {name: np.zeros(rows, np.int64) for name in ("row", "order")}
+    return Projection(G=np.zeros((rows, rows)), A=np.zeros((rows, rows)), **parts)
 
 
 def _smooth_room(n: int, bodies: int, room: int) -> Smooth:
@@ -327,8 +345,9 @@ def _event_room(n: int, bodies: int, contacts: int, room: int) -> EventRoom:
         pose=poses(bodies),
         closed=closed_contacts(room),
         rest=closed_contacts(room),
-        pace=np.zeros(n),
+        peak_speed=np.zeros(n),
         zero=np.zeros(room),
+        waits=np.zeros(room, np.int8),
         label=np.zeros(n, np.int64),
         listed=np.zeros(room, np.int64),
         upto=np.zeros(room, np.int64),
@@ -356,6 +375,7 @@ def new_scratch(model: Model) -> Scratch:
     return Scratch(
         step=_step_room(n),
         work=contact_work(room, n),
+        projection=_projection_room(n, room),
         smooth=_smooth_room(n, bodies, room),
         path=_path_room(n, bodies, contacts + len(model.pairs)),
         event=_event_room(n, bodies, contacts, room),

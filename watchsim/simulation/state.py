@@ -11,7 +11,7 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.dynamics.delassus import LARGEST
+from watchsim.dynamics.friction import LARGEST
 from watchsim.jit import by_reference
 from watchsim.model import Model, blank, copy_of, row_of, words_of
 
@@ -150,7 +150,7 @@ class Instant:
 
 
 class ReboundWatch:
-    """The contact that is hit again and again, see events/shrinking_play.py."""
+    """The contact that is hit again and again, see `stop_repeated_rebounds` in impacts.py."""
 
     contact: int
     hits: int  # within `accumulation_time` of each other, at about the same gap rate
@@ -190,7 +190,7 @@ class Counts:
     lcp_inexact: int
     jams: int
     redundant_sets: int
-    instants: int  # at which events were settled
+    instants: int  # at which events were handled
     cells_looked_up: int  # how often candidates were looked up in the table of cells
     lcp_sizes: Annotated[Integers, len(LARGEST) + 1]  # by size class
 
@@ -217,18 +217,18 @@ class State(NamedTuple):
     u: Array
     a: Array
     mode: NDArray[np.int8]  # by permanent number of the contact
-    grip: NDArray[np.int8]  # by coordinate: what dry friction in its bearing does, see dynamics/bearing_friction.py
+    grip: NDArray[np.int8]  # by coordinate: what dry friction in its bearing does, see dynamics/forces.py
     awake: NDArray[np.int8]  # by coordinate; 0: asleep on its contacts
-    active: Integers  # closed contacts of awake bodies, then those of sleeping ones, by island (contact_islands.py)
+    active: Integers  # closed contacts of awake bodies, then those of sleeping ones, by island (coupled_motion.py)
     upto: Integers  # by place in `active`, of awake bodies: the place behind the last contact of the same island
-    now: Instant
+    instant: Instant
     returning: ReboundWatch
     side_u: NDArray[np.int8]  # last sign of the velocity of a sprung coordinate
     side_q: NDArray[np.int8]  # and of its distance from rest
     sums: Sums
     counts: Counts
     worst: Worst
-    decided: Integers  # keys of the sets of modes decided at this instant, see mode_recurrence.py
+    decided: Integers  # keys of the sets of modes decided at this instant, see `decide_once` in modes.py
 
 
 StateRef = by_reference(State, __name__)
@@ -245,8 +245,8 @@ def new_state(model: Model, q: Array, u: Array) -> State:
     rest, speed, joints = model.coordinates.rest.copy(), u.astype(float).copy(), model.joints[model.joints.watched == 1]
     rest[joints.coordinate] = joints.rest + q[joints.on]
     speed[joints.coordinate] -= u[joints.on]
-    now = blank(Instant)
-    now.event_waits, now.touched, now.lenience = 1, NO_CONTACT, 1.0
+    instant = blank(Instant)
+    instant.event_waits, instant.touched, instant.lenience = 1, NO_CONTACT, 1.0
     returning = blank(ReboundWatch)
     returning.contact = NO_CONTACT
     return State(
@@ -259,7 +259,7 @@ def new_state(model: Model, q: Array, u: Array) -> State:
         awake=np.ones(n, np.int8),
         active=np.zeros(room_for(model), np.int64),
         upto=np.zeros(room_for(model), np.int64),
-        now=now,
+        instant=instant,
         returning=returning,
         side_u=np.sign(speed).astype(np.int8),
         side_q=np.sign(q - rest).astype(np.int8),
@@ -272,8 +272,8 @@ def new_state(model: Model, q: Array, u: Array) -> State:
 
 # As which plain arrays is a state saved, whatever its records are called?
 
-NUMBERS = 6  # integer fields of `Now`; its lenience is an array of its own
-HITS = 2  # integer fields of `Returning`, the first
+NUMBERS = 6  # integer fields of `Instant`; its lenience is an array of its own
+HITS = 2  # integer fields of `ReboundWatch`, the first
 
 
 class StateArrays(NamedTuple):
@@ -305,7 +305,7 @@ def arrays_of(state: State) -> StateArrays:
     parts: dict[str, NDArray[Any]] = {name: getattr(state, name) for name in StateArrays._fields if hasattr(state, name)}
     parts |= {name: words_of(parts[name], float) for name in ("clock", "sums", "worst")}
     parts["counts"] = words_of(state.counts, int)
-    parts["numbers"], parts["lenience"] = words_of(state.now, int)[:NUMBERS], row_of(state.now)["lenience"]
+    parts["numbers"], parts["lenience"] = words_of(state.instant, int)[:NUMBERS], row_of(state.instant)["lenience"]
     parts["returning"], parts["returned"] = words_of(state.returning, int)[:HITS], words_of(state.returning, float)[HITS:]
     return StateArrays(**parts)
 

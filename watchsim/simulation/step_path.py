@@ -43,12 +43,12 @@ _WEIGHTS = (0.05061426814518813, 0.11119051722668724, 0.15685332293894363, 0.181
 
 
 @kernel
-def can_fly(model, state):
+def can_fly(model, awake, awake_contacts):
     """True if no contact is in force between awake bodies and all awake coordinates have exact solutions."""
-    if state.now.awake_contacts > 0:
+    if awake_contacts > 0:
         return False
     for i in range(len(model.coordinates)):
-        if state.awake[i] and not model.coordinates[i].linear:
+        if awake[i] and not model.coordinates[i].linear:
             return False
     return True
 
@@ -95,30 +95,30 @@ def begin_flight(model, state, length, out_step):
     step.span.kind = FLIGHT
     step.span.start, step.span.length = state.clock.time, length
     for i in range(len(model.coordinates)):
-        step.q[i], step.u[i] = state.q[i], state.u[i]
+        step.q[i], step.u[i], step.awake[i], step.grip[i] = state.q[i], state.u[i], state.awake[i], state.grip[i]
         step.bound[i] = 0.0
         if state.awake[i]:
             step.bound[i] = acceleration_bound(model.coordinates[i], state.grip[i], state.q[i], state.u[i])
 
 
 @kernel
-def add_flight_sums(model, state, step, end):
+def add_flight_sums(model, step, end, out_sums):
     """Work in and damping losses of the first `end` seconds of a flight."""
     for i in range(len(model.coordinates)):
         coordinate = model.coordinates[i]
-        if not state.awake[i] or coordinate.driven:
+        if not step.awake[i] or coordinate.driven:
             continue
-        state.sums.drive += coordinate.force * (coordinate_within(model, state, step, i, end)[0] - step.q[i])
+        out_sums.drive += coordinate.force * (coordinate_within(model, step, i, end)[0] - step.q[i])
         if coordinate.coulomb > 0.0:
-            state.sums.damping += coordinate.coulomb * abs(coordinate_within(model, state, step, i, end)[0] - step.q[i])
+            out_sums.damping += coordinate.coulomb * abs(coordinate_within(model, step, i, end)[0] - step.q[i])
         if coordinate.viscous == 0.0:
             continue
         total = 0.0
         for j in range(4):
-            first = coordinate_within(model, state, step, i, end * _NODES[j])[1]
-            last = coordinate_within(model, state, step, i, end * (1.0 - _NODES[j]))[1]
+            first = coordinate_within(model, step, i, end * _NODES[j])[1]
+            last = coordinate_within(model, step, i, end * (1.0 - _NODES[j]))[1]
             total += _WEIGHTS[j] * (first * first + last * last)
-        state.sums.damping += coordinate.viscous * end * total
+        out_sums.damping += coordinate.viscous * end * total
 
 
 @kernel
@@ -129,41 +129,41 @@ def keep_flight_rows(model, state, end, spacing, step, record):
     for row in range(1, rows + 1):
         tau = end * row / rows if row < rows else end
         for i in range(n):
-            state.q[i], state.u[i] = coordinate_within(model, state, step, i, tau)
-            state.a[i] = flight_acceleration(model, state, i, state.q[i], state.u[i])
-        keep_row(state, record, step.span.start + tau, state.q, state.u, state.a)
+            state.q[i], state.u[i] = coordinate_within(model, step, i, tau)
+            state.a[i] = flight_acceleration(model, step, i, state.q[i], state.u[i])
+        keep_row(record, step.span.start + tau, state.q, state.u, state.a)
 
 
 # When did a sprung body turn back, and when did it pass its rest position?
 
 
 @kernel
-def _seen(model, state, step, i, on, tau):
+def _seen(model, step, i, on, tau):
     """Coordinate i and its velocity at time tau of the step; against coordinate `on` if that is not -1."""
-    q, u = coordinate_within(model, state, step, i, tau)
+    q, u = coordinate_within(model, step, i, tau)
     if on >= 0:
-        there, speed = coordinate_within(model, state, step, on, tau)
+        there, speed = coordinate_within(model, step, on, tau)
         return q - there, u - speed
     return q, u
 
 
 @kernel
-def _value(model, state, step, spring, turn, tau):
+def _value(model, step, spring, turn, tau):
     i, on, rest = spring
-    q, u = _seen(model, state, step, i, on, tau)
+    q, u = _seen(model, step, i, on, tau)
     return u if turn else q - rest
 
 
 @kernel
-def _root(model, state, step, spring, turn, end):
+def _root(model, step, spring, turn, end):
     """Time in [0, end] at which the velocity (turn) or the distance from rest changes sign."""
-    f_low, f_high = _value(model, state, step, spring, turn, 0.0), _value(model, state, step, spring, turn, end)
+    f_low, f_high = _value(model, step, spring, turn, 0.0), _value(model, step, spring, turn, end)
     if f_low == 0.0 or f_low * f_high > 0.0:
         return 0.0
     bracket = opened(0.0, f_low, end, f_high)
     tau = next_time(bracket)
     while is_open(bracket, tau, PASSAGE_RESOLUTION * (step.span.start + bracket.high)):
-        f = _value(model, state, step, spring, turn, tau)
+        f = _value(model, step, spring, turn, tau)
         bracket = narrowed(bracket, tau, f, f * bracket.f_high > 0.0)
         if f == 0.0:
             break
@@ -199,18 +199,18 @@ def keep_passages(model, state, step, end, record):
         side = sign(along(state.u, i, on))
         if side != 0 and side != state.side_u[i]:
             if state.side_u[i] != 0:
-                tau = _root(model, state, step, (i, on, rest), True, end) if end > 0.0 else 0.0
-                q = _seen(model, state, step, i, on, tau)[0] if end > 0.0 else along(state.q, i, on)
+                tau = _root(model, step, (i, on, rest), True, end) if end > 0.0 else 0.0
+                q = _seen(model, step, i, on, tau)[0] if end > 0.0 else along(state.q, i, on)
                 state.clock.time = now - end + tau
-                keep_event(state, record, EventKind.TURN, -1, model.coordinates[i].body, q)
+                keep_event(record, state.clock, state.counts, EventKind.TURN, -1, model.coordinates[i].body, q)
             state.side_u[i] = side
         side = sign(along(state.q, i, on) - rest)
         if side != 0 and side != state.side_q[i]:
             if state.side_q[i] != 0 and end > 0.0:
-                tau = _root(model, state, step, (i, on, rest), False, end)
+                tau = _root(model, step, (i, on, rest), False, end)
                 state.clock.time = now - end + tau
-                speed = _seen(model, state, step, i, on, tau)[1]
-                keep_event(state, record, EventKind.CROSS, -1, model.coordinates[i].body, speed)
+                speed = _seen(model, step, i, on, tau)[1]
+                keep_event(record, state.clock, state.counts, EventKind.CROSS, -1, model.coordinates[i].body, speed)
             state.side_q[i] = side
         state.clock.time = now
 
@@ -291,9 +291,9 @@ def bound_accelerations(step, n):
 
 
 @kernel
-def jerk_bound(model, state, step, i):
+def jerk_bound(model, step, i):
     """A bound of |q'''| of coordinate i over the step."""
-    if state.awake[i] == 0:
+    if step.awake[i] == 0:
         return 0.0
     if step.span.kind == FLIGHT:
         return step.bound[i] * fastest_change(model.coordinates[i])
@@ -314,17 +314,17 @@ def _largest_coefficient(derivative, dense, i):
 
 
 @kernel
-def acceleration_on_path(model, state, step, i, tau, path):
+def acceleration_on_path(model, step, i, tau, path):
     """q'' of coordinate i at time tau of the step, at which it must stand in `path`."""
-    if state.awake[i] == 0:
+    if step.awake[i] == 0:
         return 0.0
     if step.span.kind == FLIGHT:
-        return flight_acceleration(model, state, i, path.q[i], path.u[i])
+        return flight_acceleration(model, step, i, path.q[i], path.u[i])
     return dense_bend(step, i, tau)
 
 
 @hot_kernel
-def body_on_path(model, state, step, b, tau, path):
+def body_on_path(model, step, b, tau, path):
     """Bring body b's coordinates (in `path.q`, `path.u`) and pose to time tau of the step; u is exactly q'."""
     part = b
     while part >= 0:  # the body, then its carrier
@@ -334,10 +334,10 @@ def body_on_path(model, state, step, b, tau, path):
             continue
         for j in range(3 if body.motion == FREE else 1):
             i = body.first + j
-            if state.awake[i] == 0:
-                path.q[i], path.u[i] = state.q[i], 0.0
+            if step.awake[i] == 0:
+                path.q[i], path.u[i] = step.q[i], 0.0
             elif step.span.kind == FLIGHT:
-                path.q[i], path.u[i] = flow(model.coordinates[i], state.grip[i], step.q[i], step.u[i], tau)
+                path.q[i], path.u[i] = flow(model.coordinates[i], step.grip[i], step.q[i], step.u[i], tau)
             else:
                 path.q[i], path.u[i] = dense(step, i, tau)
     place_body(model, b, path.q, path.u, path.pose)

@@ -340,7 +340,7 @@ class Swings:
             if abs(away) >= amplitude:
                 return None
             state.u[i] = -section.side * omega * math.sqrt(amplitude**2 - away**2)
-            state.now.event_waits, state.now.touched = 1, NO_CONTACT
+            state.instant.event_waits, state.instant.touched = 1, NO_CONTACT
             for _ in range(TURNS):
                 found = first_section(loop, parts, state)
                 if isinstance(found, NoSection) or found.side == section.side:

@@ -215,7 +215,7 @@ CLOSED = 0.1  # of what the event loop takes for a closed gap; some units in the
 
 def in_force(state: State) -> NDArray[np.int64]:
     """The closed contacts."""
-    return state.active[: int(state.now.awake_contacts + state.now.sleeping_contacts)]
+    return state.active[: int(state.instant.awake_contacts + state.instant.sleeping_contacts)]
 
 
 def follow(loop: Loop, state: State, coordinate: int) -> bool:
@@ -345,6 +345,7 @@ def _begin_anew(state: State, parts: Parts, side: float) -> None:
     state.clock.time = 0.0
     state.u[i] = 0.0
     state.side_u[i], state.side_q[i] = -side, side
-    state.now.event_waits, state.now.touched = 1, NO_CONTACT  # which way dry friction in its bearing acts is decided anew
+    # Which way dry friction in its bearing acts is decided anew.
+    state.instant.event_waits, state.instant.touched = 1, NO_CONTACT
     anew = arrays_of(state)
     anew.sums[:], anew.counts[:], anew.worst[:] = 0.0, 0, 0.0

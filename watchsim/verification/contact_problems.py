@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 from watchsim.contact.gaps import Closed, ClosedRef
 from watchsim.dynamics import acceleration
 from watchsim.dynamics import impact as impacts
-from watchsim.dynamics.delassus import ContactWork, ContactWorkRef
-from watchsim.dynamics.lcp import LcpWorkRef
+from watchsim.dynamics.contact_work import ContactWork, contact_work_by_reference
 from watchsim.jit import entry
 from watchsim.model import Model, ModelRef
 
@@ -58,14 +57,14 @@ def _solved(what, model, closed, sizes, number, restitution, work, out):
 
     `sizes`: contacts and bearings; `number`: a speed or the lenience; `out`: grips, modes and velocities or accelerations.
     """
-    parts, rows, room = ModelRef(*model), ClosedRef(*closed), ContactWorkRef(LcpWorkRef(*work.lcp), *work[1:])
+    parts, rows, room = ModelRef(*model), ClosedRef(*closed), contact_work_by_reference(work)
     m, bearings = sizes
     grip, mode, vector = out
     if what == IMPACT:
-        return _impact(parts, rows, m, restitution, number, room, vector)
+        return _impact(parts, rows, m, restitution, number, room.system, room.problem, room.phases, vector)
     if what == MODES:
-        return _decide_modes(parts, rows, m, bearings, number, room, grip, mode)
+        return _decide_modes(parts, rows, m, bearings, number, room.system, room.problem, grip, mode)
     if what == FORCES:
-        return _solve_mode(parts, rows, m, mode, number, room)
-    _accelerate(parts, rows, m, room, vector)
+        return _solve_mode(parts, rows, m, mode, number, room.system, room.modes)
+    _accelerate(parts, rows, m, room.system, vector)
     return True

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.contact.gaps import OPEN, Closed, closed_contacts
-from watchsim.dynamics.delassus import ContactWork, contact_work
-from watchsim.dynamics.impact import energy_change
+from watchsim.dynamics.contact_work import ContactWork, contact_work
+from watchsim.dynamics.impact import energy_gain
 from watchsim.dynamics.lcp import LcpOutcome, lcp_work, solve_lcp
 from watchsim.jit import callable_kernel
 from watchsim.model import (
@@ -41,7 +41,7 @@ from watchsim.verification.contact_problems import decide_modes, impact, solve_m
 Array = NDArray[np.float64]
 
 
-_energy_change = callable_kernel(energy_change)
+_energy_gain = callable_kernel(energy_gain)
 
 
 class BareContacts:
@@ -92,11 +92,12 @@ class BareContacts:
         after, m = u.copy(), len(self.taken)
         shares = (self.restitution if restitution is None else restitution)[self.taken]
         solved = impact(self.model, self.closed, m, shares, 0.0, self.work, after)
-        return bool(solved), after, self.work.force[: 2 * m].copy()
+        return bool(solved), after, self.work.phases.impulse[: 2 * m].copy()
 
     def energy_change(self) -> float:
         """Of the impact just solved, as the kernel says, J."""
-        return float(_energy_change(len(self.taken), self.work)[0])
+        system, phases = self.work.system, self.work.phases
+        return float(_energy_gain(len(self.taken), system.G, phases.rates, phases.impulse)[0])
 
     def kinetic(self, u: Array) -> float:
         """J."""
@@ -107,15 +108,15 @@ class BareContacts:
         mode, grip = np.full(self.m, OPEN, np.int8), np.zeros(self.n, np.int8)
         for row, i in enumerate(self.taken):
             self.closed.kin[row].gN_dot, self.closed.kin[row].gT_dot = self.W[2 * i : 2 * i + 2] @ u
-        self.work.h[:] = h
+        self.work.system.h[:] = h
         solved = decide_modes(self.model, self.closed, len(self.taken), 0, speed_zero, self.work, grip, mode)
         return bool(solved), mode
 
     def forces(self, h: Array, mode: NDArray[np.int8]) -> Array:
         """Forces N, T, N, T, ... of the contacts that take part in their modes under the forces h."""
-        self.work.inverse[:], self.work.h[:] = 1.0 / self.mass, h
+        self.work.system.inverse[:], self.work.system.h[:] = 1.0 / self.mass, h
         solve_mode(self.model, self.closed, len(self.taken), np.asarray(mode, np.int8), 1.0, self.work)
-        return self.work.force[: 2 * len(self.taken)].copy()
+        return self.work.system.force[: 2 * len(self.taken)].copy()
 
 
 Problem = tuple[Array, Array]
