@@ -325,7 +325,9 @@ def test_with_a_release_that_was_not_tried_plain_njit_gives_the_same(release: st
 def test_pyproject_bounds_numba_to_the_releases_that_were_tried() -> None:
     (needed,) = (
         one
-        for one in tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["dependencies"]
+        for one in tomllib.loads((Path(__file__).resolve().parents[1] / "pyproject.toml").read_text())["project"][
+            "dependencies"
+        ]
         if one.startswith("numba")
     )
     (first, last) = jit.TRIED

@@ -20,7 +20,7 @@ from typing import Any
 from watchsim.construction import registry
 from watchsim.construction.design import Design
 from watchsim.drawing.write import Sheet
-from watchsim.scene.designed import chosen
+from watchsim.scene.designed import chosen, designed
 from watchsim.scene.load import from_mapping
 from watchsim.scene.scene import Scene
 from watchsim.storage.write import write_folder
@@ -108,14 +108,14 @@ def _doc(design: Design) -> str:
 
 def names() -> tuple[str, ...]:
     """The names of all designs."""
-    return registry.NAMES
+    return registry.names()
 
 
 def __getattr__(name: str) -> Maker:
-    if name not in registry.NAMES:
-        raise AttributeError(f"there is no design {name!r}; known are {', '.join(registry.NAMES)}")
-    return Maker(registry.design(name))
+    if name not in registry.names():
+        raise AttributeError(f"there is no design {name!r}; known are {', '.join(registry.names())}")
+    return Maker(designed(name))
 
 
 def __dir__() -> list[str]:
-    return sorted(["names", *registry.NAMES])
+    return sorted(["names", *registry.names()])

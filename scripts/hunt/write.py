@@ -13,7 +13,7 @@ from watchsim.drawing.write import dxf_text
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Line
 from watchsim.scene.scene import Body, Scene
-from watchsim.scene.write_toml import toml_text
+from watchsim.scene.toml import toml_text
 
 
 def write_scene(scene: Scene, path: Path) -> Path:

@@ -28,7 +28,7 @@ from watchsim.bench.profile import profile_of, profile_text
 from watchsim.bench.scenarios import Scenario, scenarios
 from watchsim.commands.bench import measured, write
 from watchsim.paths import profiles_dir
-from watchsim.render.phase_bands import plot_speed
+from watchsim.render.study_plot import plot_speed
 from watchsim.scene.load import load
 from watchsim.simulation import MOREAU
 from watchsim.simulation.simulate import simulate

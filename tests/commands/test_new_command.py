@@ -8,7 +8,7 @@ import pytest
 from every_time import few
 
 from watchsim.cli import main
-from watchsim.construction.registry import NAMES
+from watchsim.construction.registry import names
 from watchsim.scene.load import load
 
 
@@ -70,7 +70,7 @@ def test_refused(words, told, capsys, tmp_path, monkeypatch):
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize("name", few(NAMES, lambda name: name not in ("involute_pair", "cycloidal_pair")))
+@pytest.mark.parametrize("name", few(names(), lambda name: name not in ("involute_pair", "cycloidal_pair")))
 def test_every_design_can_be_drawn_from_the_command_line(name, tmp_path, capsys):
     """No dimension is called like an option of the command."""
     assert main(["new", name, "-o", str(tmp_path / "made")]) == 0

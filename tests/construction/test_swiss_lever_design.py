@@ -18,8 +18,8 @@ from shapely.affinity import rotate, translate
 
 from watchsim.construction.design import drawing_of
 from watchsim.construction.registry import design
-from watchsim.construction.swiss_lever import sheets, swiss
-from watchsim.construction.swiss_lever_outlines import Swiss, crescent_needed, drop_after_recoil
+from watchsim.construction.swiss_lever import drop_after_recoil, sheets, swiss
+from watchsim.construction.swiss_lever_outlines import Swiss, crescent_needed
 from watchsim.designs import Drawn
 from watchsim.mechanism.overlap import overlap_faults
 

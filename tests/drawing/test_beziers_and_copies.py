@@ -13,7 +13,7 @@ from scipy.interpolate import BSpline
 from shapely import LineString, distance
 from shapely import points as shapely_points
 
-from watchsim.drawing.curves import LONGEST, SAMPLES, bezier_points, circle_of, elevated, emit_row, joined, straightened
+from watchsim.drawing.curves import LONGEST, SAMPLES, bezier_points, chained, circle_of, elevated, emit_row, straightened
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.projection import (
     Affine,
@@ -153,14 +153,14 @@ def test_a_quadratic_curve_is_a_cubic_one() -> None:
 def test_a_curve_in_pieces_becomes_one_again(shares: tuple[float, ...]) -> None:
     for _ in range(3):
         points = RNG.uniform(-5.0, 5.0, (4, 2))
-        (chain,) = joined(cut(points, shares), 1e-9)
+        (chain,) = chained(cut(points, shares), 1e-9)
         assert chain.curves == len(shares) + 1 and chain.moved < 1e-12 and chain.spline.degree == 3
         spline, t = curve_of(chain.spline), np.linspace(0.0, 1.0, 33)
         start, stop = chain.spline.knots[3], chain.spline.knots[-4]
         assert len(chain.spline.knots) == len(chain.spline.points) + 4
         assert spline(start + t * (stop - start)) == pytest.approx(curve_of(bezier(points))(t), abs=1e-9)
     quadratic = cut(RNG.uniform(-5.0, 5.0, (3, 2)), (0.4,))
-    assert [chain.curves for chain in joined(quadratic, 1e-9)] == [2] and joined([], 1.0) == []
+    assert [chain.curves for chain in chained(quadratic, 1e-9)] == [2] and chained([], 1.0) == []
 
 
 def meeting_curves(first: float, second: float, off: float = 0.0, bend: float = 0.0) -> list[Spline]:
@@ -174,29 +174,29 @@ def meeting_curves(first: float, second: float, off: float = 0.0, bend: float = 
 def test_curves_that_meet_a_little_beside_their_handles_are_joined_within_the_slack(first: float) -> None:
     for second in (1.0, 3.0):
         row = meeting_curves(first, second, 1e-4)
-        (chain,) = joined(row, 1.1e-4)
+        (chain,) = chained(row, 1.1e-4)
         assert chain.curves == 2 and chain.moved == pytest.approx(1e-4, rel=1e-6)
-        assert [(part.curves, part.moved) for part in joined(row, 0.9e-4)] == [(1, 0.0), (1, 0.0)]
-        assert [part.spline for part in joined(row, 0.9e-4)] == row
-        assert len(joined(meeting_curves(first, second, 0.0, 0.5), 1e-3)) == 2  # a corner
-    away = joined([*meeting_curves(1.0, 1.0, 1e-4), *meeting_curves(1.0, 1.0, 5e-5)], 1e-3)
+        assert [(part.curves, part.moved) for part in chained(row, 0.9e-4)] == [(1, 0.0), (1, 0.0)]
+        assert [part.spline for part in chained(row, 0.9e-4)] == row
+        assert len(chained(meeting_curves(first, second, 0.0, 0.5), 1e-3)) == 2  # a corner
+    away = chained([*meeting_curves(1.0, 1.0, 1e-4), *meeting_curves(1.0, 1.0, 5e-5)], 1e-3)
     assert [(part.curves, round(part.moved, 9)) for part in away] == [(2, 1e-4), (2, 5e-5)]
 
 
 def test_handles_of_no_length_or_of_very_unlike_length_end_a_spline() -> None:
     for ratio, count in ((0.9e6, 1), (1.1e6, 2)):
-        assert len(joined(meeting_curves(1.0, ratio), 1e-9)) == count
-        assert len(joined(meeting_curves(ratio, 1.0), 1e-9)) == count
-    assert len(joined(meeting_curves(1.0, 0.0), 1.0)) == len(joined(meeting_curves(0.0, 1.0), 1.0)) == 2
+        assert len(chained(meeting_curves(1.0, ratio), 1e-9)) == count
+        assert len(chained(meeting_curves(ratio, 1.0), 1e-9)) == count
+    assert len(chained(meeting_curves(1.0, 0.0), 1.0)) == len(chained(meeting_curves(0.0, 1.0), 1.0)) == 2
 
 
 def test_short_handles_are_handles() -> None:
-    assert len(joined(meeting_curves(1e-3, 1.0), 1e-9)) == len(joined(meeting_curves(1.0, 1e-3), 1e-9)) == 1
+    assert len(chained(meeting_curves(1e-3, 1.0), 1e-9)) == len(chained(meeting_curves(1.0, 1e-3), 1e-9)) == 1
 
 
 def test_splines_grow_only_so_long() -> None:
     row = cut(np.array([(0.0, 0.0), (1.0, 2.0), (3.0, 2.0), (4.0, 0.0)]), [k / (LONGEST + 2) for k in range(1, LONGEST + 2)])
-    assert [chain.curves for chain in joined(row, 1e-6)] == [LONGEST, 2]
+    assert [chain.curves for chain in chained(row, 1e-6)] == [LONGEST, 2]
 
 
 @pytest.mark.parametrize(("off", "waiting"), [(0.8e-5, 1), (1.2e-5, 2)])

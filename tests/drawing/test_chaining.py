@@ -21,9 +21,8 @@ from watchsim.drawing.chain_faults import (
     STRAY,
     chains_of,
     distance,
-    finding,
     gap_finding,
-    near_pairs,
+    near_ends,
     paired,
     related,
     same_edge,
@@ -370,7 +369,7 @@ def test_of_many_edges_those_of_a_shifted_outline_are_found(count: int) -> None:
 def test_the_finding_stands_on_the_outline() -> None:
     """In the middle of its first edge, in millimetres."""
     loop = polygon(np.array([[2e-3, 5e-3], [4e-3, 5e-3], [4e-3, 9e-3]]))
-    found = finding(loop, 3e-9)
+    (found,) = twins([loop, loop.moved(0.0, (3e-9, 0.0))])
     assert (found.x_mm, found.y_mm) == pytest.approx((3.0, 5.0)) and "within 3 nm" in found.message
 
 
@@ -476,7 +475,7 @@ def test_what_one_entity_draws_without_lifting_the_pen_is_a_row() -> None:
 @pytest.mark.parametrize("count", [2, 5, 40, FEW, FEW + 1])
 def test_the_nearest_ends_are_paired_first(count: int) -> None:
     points = [(x, y) for x, y in RNG.uniform(0.0, 1.0, (count, 2)).tolist()]
-    found = near_pairs(points)
+    found = near_ends(points)
     gaps = [gap for gap, _, _ in found]
     assert gaps == sorted(gaps) and len({(i, j) for _, i, j in found}) == len(found)
     assert all(i < j and gap == pytest.approx(math.dist(points[i], points[j])) for gap, i, j in found)
@@ -484,7 +483,7 @@ def test_the_nearest_ends_are_paired_first(count: int) -> None:
     for k in range(0, count, max(1, count // 20)):
         nearest = np.argsort(np.hypot(*(array - array[k]).T))[1:9].tolist()
         assert {(min(k, n), max(k, n)) for n in nearest} <= pairs
-    assert near_pairs(points[:1]) == near_pairs([]) == []
+    assert near_ends(points[:1]) == near_ends([]) == []
 
 
 @pytest.mark.parametrize(("gap", "stray"), [(0.9, False), (1.1, True)])
@@ -493,7 +492,7 @@ def test_a_line_is_stray_where_it_is_far_from_all_others_beside_its_length(gap: 
         off = gap * STRAY * length
         drawn = strokes([line((0, 0), (length, 0)), line((length + off, 0), (length + off, 90)), Arc(1.0, 1.0, MM, 0.0, 1.0)])
         loose = [0, 1, 2, 3, 4, 5]
-        near = near_pairs([end for stroke in drawn for end in (stroke.edge.start, stroke.edge.end)])
+        near = near_ends([end for stroke in drawn for end in (stroke.edge.start, stroke.edge.end)])
         found = stray_lines([0, 1, 2], loose, near, drawn)
         assert (0 in found) is stray and 1 not in found and 2 not in found
         assert 0 not in stray_lines([1, 2], loose, near, drawn) and 0 not in stray_lines([0], loose[1:], [], drawn)

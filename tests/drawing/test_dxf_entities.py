@@ -16,7 +16,7 @@ from random_dxf import drawing
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.dxf_records import COMMON, DxfError, Record, as_number, decoded, read_tags, strange_codes
 from watchsim.drawing.findings import named_length
-from watchsim.drawing.read import SMALLEST, smallness, units_missing
+from watchsim.drawing.read import SMALLEST, odd_size, units_missing
 from watchsim.geometry.loops import Loop, extents
 from watchsim.geometry.primitives import TURN, Arc, Line
 from watchsim.geometry.solids import area
@@ -480,10 +480,10 @@ def test_a_drawing_of_the_size_of_a_point_is_told(share: float, told: bool) -> N
         Loop((Line(0.0, 0.0, 0.0, size),)),
         Loop((Arc(0.0, 0.0, 0.5 * size, 0.0, TURN),)),
     ):
-        found = smallness((loop,), 1e-6)
+        found = odd_size((loop,), 1e-6, True)
         assert [finding.code for finding in found] == ["tiny"] * told
         assert all(f"{1e6 * size:.3g} µm across" in finding.message and "within 1 µm" in finding.message for finding in found)
-    assert smallness((), 1e-6) == []
+    assert odd_size((), 1e-6, True) == []
 
 
 def test_missing_units_are_said_first_with_both_sizes(read_bytes: Callable[..., Drawing]) -> None:

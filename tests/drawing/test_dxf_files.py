@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import io
 import math
+import os
 import struct
+import subprocess
+import sys
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
@@ -398,3 +401,20 @@ def test_a_made_sheet_holds_arcs_of_either_sense(tmp_path: Path, sweep: float) -
     assert np.array(sorted([turned.start, turned.end])) == pytest.approx(1e-3 * ends)
     assert abs(turned.sweep) == pytest.approx(abs(sweep))
     assert turned.point(0.5) == pytest.approx(tuple(1e-3 * np.array(arc.point(0.5))))
+
+
+WRITTEN = """
+from watchsim.drawing.write import dxf_text
+from watchsim.geometry.loops import Loop
+from watchsim.geometry.primitives import Arc
+print(dxf_text([Loop((Arc(0.0, 0.0, 1e-3, 0.0, 6.283185307179586),), "RIM")]))
+"""
+
+
+def test_another_process_writes_the_same_bytes() -> None:
+    """Whatever the order of its sets, which changes with the seed of their hashes."""
+    texts = set()
+    for seed in "14":
+        environment = {**os.environ, "PYTHONHASHSEED": seed}
+        texts.add(subprocess.run([sys.executable, "-c", WRITTEN], env=environment, capture_output=True, check=True).stdout)
+    assert len(texts) == 1 and b"CIRCLE" in texts.pop()

@@ -17,7 +17,7 @@ from watchsim.drawing.circles import curvatures, facets
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.findings import Finding
 from watchsim.drawing.inspection import finding_lines, inspect_report, inspect_text
-from watchsim.drawing.read import smallness
+from watchsim.drawing.read import odd_size
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import TURN, Arc, Line
 
@@ -174,7 +174,7 @@ def test_points_are_in_millimetres(read_bytes: Reader) -> None:
 def test_a_drawing_hardly_larger_than_one_point_is_told(apart: tuple[float, float], tiny: bool) -> None:
     """Two small circles, which have no ends apart: on each other, side by side, one above the other."""
     loops = tuple(Loop((Arc(x, y, 1e-7, 0.0, TURN),)) for x, y in ((0.0, 0.0), apart))
-    found = smallness(loops, 1e-6)
+    found = odd_size(loops, 1e-6, True)
     assert [finding.code for finding in found] == (["tiny"] if tiny else [])
     assert not tiny or "0.2 µm across, and ends within 1 µm" in found[0].message
 

@@ -116,7 +116,7 @@ def test_very_many_curves_are_followed_with_a_few_more_arcs(monkeypatch: pytest.
     rng = np.random.default_rng(4)
     curves = [spline(3, [0] * 4 + [1] * 4, 1e-3 * rng.uniform(-1.0, 1.0, (4, 2))) for _ in range(100)]
     thorough = fit_all(curves, [1e-7] * len(curves))
-    monkeypatch.setattr("watchsim.geometry.fitting.MANY_FIT", len(curves) - 1)
+    monkeypatch.setattr("watchsim.geometry.fitting.MANY_SPANS", len(curves) - 1)
     brisk = fit_all(curves, [1e-7] * len(curves))
     for curve, fit in zip(curves, brisk, strict=True):
         measured = true_distance(curve, fit, float(curve.breaks[0]), float(curve.breaks[-1]))

@@ -21,16 +21,19 @@ from watchsim.geometry.loops import (
     chords,
     edge_extents,
     extents,
+    meetings,
     near_pairs,
     points_along,
     polyline,
     table_of,
     total_length,
     winding,
+    within,
 )
-from watchsim.geometry.meetings import meetings, within
 from watchsim.geometry.primitives import QUARTER, TURN, Arc, Edge, Line, Point, cos_sin, moved
 from watchsim.geometry.solids import pieces, region
+from watchsim.scene import outlines
+from watchsim.scene.outlines import first_crossing
 
 REACH = 1e-6
 ONE, OTHER = np.zeros(1, np.int64), np.ones(1, np.int64)
@@ -544,3 +547,65 @@ def test_points_along_an_edge(edge: Line | Arc) -> None:
     fractions = np.array([0.0, 0.3, 1.0])
     expected = [complex(*edge.point(fraction)) for fraction in fractions.tolist()]
     assert points_along(edge, fractions) == pytest.approx(np.array(expected), abs=4e-15)
+
+
+# Which sides of a polygon cross?
+
+
+def crossing_by_pairs(points: list[Point]) -> tuple[int, int] | None:
+    """The first two sides that meet, by all pairs of them: exactly, of corners in whole numbers."""
+
+    def turn(a: Point, b: Point, c: Point) -> float:
+        return math.copysign(1.0, cross) if (cross := (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) else 0.0
+
+    count = len(points)
+    for i in range(count):
+        for j in range(i + 2, count - (i == 0)):
+            a, b, c, d = points[i], points[(i + 1) % count], points[j], points[(j + 1) % count]
+            apart = any(max(a[k], b[k]) < min(c[k], d[k]) or max(c[k], d[k]) < min(a[k], b[k]) for k in (0, 1))
+            if not apart and turn(a, b, c) * turn(a, b, d) <= 0.0 and turn(c, d, a) * turn(c, d, b) <= 0.0:
+                return i, j
+    return None
+
+
+def star(rng: random.Random, count: int) -> list[Point]:
+    """Corners around the origin, in whole numbers; hardly ever do sides cross."""
+    angles = sorted(rng.uniform(0.0, TURN) for _ in range(count))
+    corners = ((rng.uniform(5e5, 1e6), angle) for angle in angles)
+    return list(dict.fromkeys((float(round(r * math.cos(a))), float(round(r * math.sin(a)))) for r, a in corners))
+
+
+def test_the_crossing_sides_of_a_polygon_are_those_of_all_pairs() -> None:
+    rng = random.Random(5)
+    found = []
+    for number in range(200):
+        points = star(rng, rng.choice((3, 5, 12, 60)))
+        if number % 2:  # two corners exchanged
+            i, j = rng.sample(range(len(points)), 2)
+            points[i], points[j] = points[j], points[i]
+        if number % 5 == 0:  # on few places: sides touch, and lie on each other
+            points = list(dict.fromkeys((float(rng.randrange(5)), float(rng.randrange(5))) for _ in points + points))
+        found.append(first_crossing(points))
+        assert found[-1] == crossing_by_pairs(points), points
+    assert 20 < found.count(None) < 180
+    crowd = [(math.cos(2.0 * k), math.sin(2.0 * k)) for k in range(400)]  # where all sides crowd the first pair is named, too
+    assert first_crossing(crowd) == crossing_by_pairs(crowd)
+
+
+def test_looking_for_crossing_sides_takes_work_in_proportion_to_their_number(monkeypatch: pytest.MonkeyPatch) -> None:
+    looked_at = []
+
+    def counted(corners: np.ndarray, first: np.ndarray, second: np.ndarray) -> tuple[int, int] | None:
+        looked_at[-1] += len(first)
+        return meeting(corners, first, second)
+
+    meeting = outlines._meeting
+    monkeypatch.setattr(outlines, "_meeting", counted)
+    for count in (2000, 16000):
+        looked_at.append(0)
+        angles = np.arange(count) * (TURN / count)
+        radii = 1.0 + 0.3 * np.sin(3.0 * angles) + 0.02 * np.cos(37.0 * angles)
+        assert (
+            first_crossing(list(zip((radii * np.cos(angles)).tolist(), (radii * np.sin(angles)).tolist(), strict=True))) is None
+        )
+    assert looked_at[0] >= 2000 and looked_at[1] <= 10 * looked_at[0]

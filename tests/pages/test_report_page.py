@@ -21,6 +21,7 @@ from scipy.interpolate import BPoly
 
 from watchsim.analysis.phases import Phase
 from watchsim.analysis.summary import summary
+from watchsim.cli import main
 from watchsim.drawing.read import read
 from watchsim.escapement.function_report import statics
 from watchsim.escapement.measure import measure
@@ -311,3 +312,41 @@ def test_a_rim_and_a_hairspring_are_in_data_and_still_picture(lever: Trajectory)
     assert data["bodies"][coil["body"]]["name"] == "balance" and coil["turns"] == 13
     assert 'data-coil="0"' in text and len(text) < 1e6
     assert data_of(page_text(lever))["coils"] == []
+
+
+LAYERS = (NASTY, "quotes \" ' ` and \\ and {}${}%s", "tab\tand\nline \x7f \u2028 \u202e", "long " + 2_000 * "<b>&x;")
+
+
+@pytest.mark.parametrize("layer", LAYERS, ids=["script", "quotes", "control", "10 kB"])
+def test_layer_names_of_a_drawing_stay_text_in_page_and_glb(layer: str, tmp_path: Path) -> None:
+    name = "".join(c if c.isalnum() else f"&#{ord(c)};" for c in layer)
+    head = 'xmlns="http://www.w3.org/2000/svg" width="20mm" height="20mm" viewBox="-10 -10 20 20"'
+    (tmp_path / "wheel.svg").write_text(f'<svg {head}><g id="{name}"><circle r="4"/></g></svg>', encoding="utf-8")
+    (tmp_path / "scene.toml").write_text(
+        f"""[scene]
+title = {json.dumps(layer, ensure_ascii=False)}
+schema = 1
+[bodies.wheel]
+drawing = "wheel.svg"
+layers = [{json.dumps(layer, ensure_ascii=False)}]
+inertia = "1 g·mm²"
+[[springs]]
+body = "wheel"
+stiffness = "1 µN·m/rad"
+rest = "90°"
+[run]
+duration = "0.1 s"
+""".replace("\x7f", "\\u007f"),
+        encoding="utf-8",
+    )
+    scene, run, out = (str(tmp_path / one) for one in ("scene.toml", "run", "out"))
+    assert main(["run", scene, "-o", run, "--no-plots"]) == 0
+    assert main(["report", run]) == 0
+    text = (tmp_path / "run" / "report.html").read_text(encoding="utf-8")
+    assert not any(tag == "img" or any(key.startswith("on") for key in keys) for tag, keys in Tags(text).found)
+    assert text.count("<script") == text.count("</script>") == 2
+    assert data_of(text)["title"] == layer and [part["layer"] for part in data_of(text)["parts"]] == [layer]
+    assert main(["export", run, "-o", out, "--format", "glb"]) == 0
+    data = (tmp_path / "out" / "scene.glb").read_bytes()
+    tree = json.loads(data[20 : 20 + int.from_bytes(data[12:16], "little")])
+    assert [mesh["name"] for mesh in tree["meshes"]] == [f"wheel.{layer}"]

@@ -47,8 +47,8 @@ from watchsim.render.palette import (
     mixed,
     on_dark,
 )
-from watchsim.render.phase_bands import COLOURS, MARKS, NAMES, plot_speed
 from watchsim.render.rows import COLUMNS, bands, distinct, reduced
+from watchsim.render.study_plot import ENGINES, plot_speed
 from watchsim.render.style import SERIES, figure, key
 from watchsim.render.timing_plot import PAPER, plot_tape
 from watchsim.simulation.simulate import simulate
@@ -249,8 +249,7 @@ def test_every_figure_in_its_place(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 
 
 def test_every_engine_has_a_look_of_its_own() -> None:
-    assert len(set(COLOURS.values())) == len(set(MARKS.values())) == len(set(NAMES.values())) == 5
-    assert set(COLOURS) == set(MARKS) == set(NAMES)
+    assert [len(set(looks)) for looks in zip(*ENGINES.values(), strict=True)] == [5, 5, 5]
 
 
 def test_panels_stand_three_to_a_row(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

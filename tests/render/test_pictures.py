@@ -13,6 +13,7 @@ from matplotlib.colors import to_rgb
 from render.fake_runs import MM, circle, disc_run, polygon, watch_run, watch_scene
 
 import watchsim as ws
+from watchsim.cli import main
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.findings import Finding
 from watchsim.drawing.read import read
@@ -480,3 +481,17 @@ def test_events_of_another_scene_are_refused():
     events = np.array([(0.5, EventKind.CLOSE, 7, -1, 0.0, 0.0, 0.0, 0.0)], dtype=EVENT_DTYPE)
     with pytest.raises(ValueError, match="do not belong to its scene"):
         ContactMarks(replace(run, events=events))
+
+
+def test_texts_as_long_as_a_file_do_not_make_a_picture_large(tmp_path: Path) -> None:
+    """100 kB of an entity in names and words of a drawing, lines of it too, are cut in the picture."""
+    head = 'xmlns="http://www.w3.org/2000/svg" width="9mm" height="9mm" viewBox="0 0 9 9"'
+    entity = f'<!DOCTYPE svg [<!ENTITY long "{20_000 * "w$_^x"}">]>'
+    layers = "".join(f'<g id="{k}&#10;&long;"><path d="M1 {k}h3v.5"/><text>&long;</text></g>' for k in range(3))
+    sizes = []
+    short = f"<svg {head}>{layers.replace('&long;', 24 * 'w')}</svg>"
+    for name, text in (("a.svg", short), (f"{120 * 'n'}.svg", f"{entity}<svg {head}>{layers}</svg>")):
+        (tmp_path / name).write_text(text)
+        assert main(["inspect", str(tmp_path / name), "--png", str(tmp_path / "out.png")]) == 0
+        sizes.append(imageio.imread(tmp_path / "out.png").shape[:2])
+    assert sizes[1][1] <= 1.2 * sizes[0][1] and sizes[1][0] <= 1.1 * sizes[0][0]

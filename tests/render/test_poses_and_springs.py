@@ -32,7 +32,6 @@ from watchsim.render.view import (
     choose,
     dense,
     hairsprings,
-    moving,
     placed,
     poses,
     recorded,
@@ -149,7 +148,7 @@ def test_gaps_in_the_record_are_neither_drawn_nor_allowed():
 
 def test_bodies_are_chosen_by_name():
     run = watch_run()
-    assert [body.name for body in moving(run)] == ["wheel", "lever", "balance"]
+    assert [body.name for body in choose(run, None)] == ["wheel", "lever", "balance"]
     assert [body.name for body in choose(run, ["balance", "wheel"])] == ["balance", "wheel"]
     assert [body.name for body in choose(run, "lever")] == ["lever"]
     for wrong in (["lver"], ["banking"], []):

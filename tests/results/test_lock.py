@@ -13,8 +13,7 @@ from watchsim.results.folder import lock_text, versions
 from watchsim.scene.errors import SceneError
 from watchsim.scene.load import load
 from watchsim.scene.scene import Written
-from watchsim.scene.values import tomllib
-from watchsim.scene.write_toml import toml_text
+from watchsim.scene.toml import toml_text, tomllib
 
 FREE = """
 [bodies.disc]

@@ -21,7 +21,8 @@ from watchsim.scene.errors import Faults
 from watchsim.scene.keys import BODY
 from watchsim.scene.outlines import Outlines, first_crossing, read_outlines, signed_area
 from watchsim.scene.placing import adjusted, lines_near, part_near, parts_of
-from watchsim.scene.values import Table, key_lines, tomllib
+from watchsim.scene.toml import key_lines, tomllib
+from watchsim.scene.values import Table
 
 HEAD: dict[str, Any] = {"drawing": "a.dxf", "pivot": "P", "material": {"G": "left"}}
 SOLIDS = [

@@ -25,7 +25,7 @@ from watchsim.scene.load import load
 from watchsim.scene.read_settings import read_expectations
 from watchsim.scene.roles import Roles, is_driven, roles, with_anchor
 from watchsim.scene.scene import Body, Expectation, Scene, path, swing
-from watchsim.scene.write_toml import toml_text, value_text
+from watchsim.scene.toml import toml_text, value_text
 
 ROOT = Path(__file__).resolve().parents[2]
 BENCH = SCENES_BESIDE / "bench_lever.json"

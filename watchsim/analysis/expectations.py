@@ -15,7 +15,7 @@ from watchsim.mechanism.compile import compile_scene
 from watchsim.scene.errors import Fault, Faults
 from watchsim.scene.roles import keeps_time, partners, roles
 from watchsim.scene.scene import Expectation, Scene
-from watchsim.scene.values import key_lines
+from watchsim.scene.toml import key_lines
 from watchsim.simulation.state import COUNT_NAMES, EVENT_DTYPE, Stop
 from watchsim.simulation.trajectory import Trajectory
 

@@ -76,7 +76,7 @@ def measured(
 def write(folder: Path, rows: list[dict[str, Any]], references: list[dict[str, Any]]) -> None:
     """bench.json, bench.md and bench.png."""
     from watchsim.bench.compare import table
-    from watchsim.render.phase_bands import plot_speed
+    from watchsim.render.study_plot import plot_speed
     from watchsim.results.tables import json_text
     from watchsim.storage.write import write_file
 

@@ -109,8 +109,9 @@ def _unknown(design: Design, word: str) -> str:
 
 def _list_designs(as_json: bool) -> None:
     from watchsim.construction import registry as known
+    from watchsim.scene.designed import designed
 
-    designs = [known.design(name) for name in known.NAMES]
+    designs = [designed(name) for name in known.names()]
     if as_json:
         print_json({"designs": [{"name": d.name, "title": d.title, "dimensions": len(d.dimensions)} for d in designs]})
         return

@@ -212,7 +212,7 @@ def empty_panels(scene: Scene) -> Kinematics:
 
 def _load() -> None:
     """Load what draws, in a process of the command line without what nobody reads there."""
-    from watchsim.render.style import without_help
+    from watchsim.render import without_help
 
     if stopping.installed():
         without_help()

@@ -1,5 +1,6 @@
 """How is a mechanism drawn from its dimensions?
 
-In: dimensions with limits and sources. Out: outlines (`Sheet`) and the text of a scene; `known` lists the designs, one folder
-each. Imports `drawing` and `geometry`; knows no scene.
+In: dimensions with limits and sources. Out: outlines (`Sheet`) and the text of a scene. One file a mechanism, found by
+`registry`; `scene_builder`, `outline`, `parts` and `lever_parts` hold what several share. Imports `drawing` and `geometry`, no
+scene.
 """

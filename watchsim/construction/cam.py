@@ -1,4 +1,4 @@
-"""The cam as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Eccentric cam with its follower: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -6,14 +6,10 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from watchsim.construction.design import Conflict, Design, contact_tables, dim, told
-from watchsim.construction.outline import circle, rounded
+from watchsim.construction import scene_builder as toml
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim
+from watchsim.construction.outline import circle, polygon
 from watchsim.drawing.write import Sheet
-from watchsim.geometry.loops import Loop
-
-# Which numbers does the designer of an eccentric cam and its follower choose?
-
-CHOSEN = "chosen for this design"
 
 
 @dataclass(frozen=True)
@@ -54,63 +50,36 @@ def leaves_at(values: Cam) -> float:
     return math.degrees(math.sqrt(press / (1e-3 * values.mass * e * (1.0 + values.eccentricity / reach))))
 
 
-# What does the scene of an eccentric cam say?
-
 TURNS = 3.0
-
-TEXT = """\
-# An eccentric cam with its follower, drawn to these dimensions:
-{dimensions}
-# Without friction the follower leaves the cam from {leaves:.6g} °/s on.
-
-[scene]
-title  = "Eccentric cam with its follower"
-schema = 1
-
-[bodies.cam]                         # turns counter-clockwise, evenly; its middle is below the axis at the start
-drawing  = "cam.dxf"
-layers   = ["CAM"]
-pivot    = ["0 mm", "0 mm"]
-motion   = "driven"
-velocity = "{values.speed!r} °/s"
-
-[bodies.follower]
-drawing  = "follower.dxf"
-layers   = ["END"]
-pivot    = ["0 mm", "0 mm"]
-position = ["0 mm", "{lowest!r} mm"]
-motion   = "slide"
-axis     = [0.0, 1.0]
-mass     = "{values.mass:.15g} g"
-
-[[springs]]                          # presses from the start: its rest lies inside the cam
-body      = "follower"
-stiffness = "{values.rate:.15g} N/mm"
-rest      = "{rest!r} mm"
-
-{contacts}
-[run]
-duration  = "{duration:.15g} s"
-tolerance = 1e-9
-"""
-
-CONTACTS = (("follower.END", "cam.CAM"),)
 
 
 def scene_text(values: Cam) -> str:
     """The text of scene.toml: the follower on the lowest point of the cam."""
-    return TEXT.format(
-        dimensions=told(values),
-        values=values,
-        contacts=contact_tables(values, *CONTACTS),
-        leaves=leaves_at(values),
-        lowest=lowest(values),
-        rest=-values.preload / values.rate,
-        duration=round(TURNS * 360.0 / values.speed, 9),
+    leaves = f"Without friction the follower leaves the cam from {leaves_at(values):.6g} °/s on."
+    below = "turns counter-clockwise, evenly; its middle is below the axis at the start"
+    return toml.scene(
+        toml.head(
+            values, "An eccentric cam with its follower, drawn to these dimensions:", "Eccentric cam with its follower", leaves
+        ),
+        toml.body("cam", "cam", "CAM", below, pivot=toml.ORIGIN, motion="driven", velocity=f"{values.speed!r} °/s"),
+        toml.body(
+            *("follower", "follower", "END"),
+            pivot=toml.ORIGIN,
+            position=("0 mm", f"{lowest(values)!r} mm"),
+            motion="slide",
+            axis=(0.0, 1.0),
+            mass=f"{values.mass:.15g} g",
+        ),
+        toml.table(
+            *("[[springs]]", "presses from the start: its rest lies inside the cam"),
+            body="follower",
+            stiffness=f"{values.rate:.15g} N/mm",
+            rest=f"{-values.preload / values.rate!r} mm",
+        ),
+        toml.contacts(values, "follower.END cam.CAM"),
+        toml.run(f"{round(TURNS * 360.0 / values.speed, 9):.15g} s"),
     )
 
-
-# What makes the eccentric cam with its follower a design?
 
 BORE = 0.12  # by the radius of the cam
 SHAFT = 6.0  # length of the follower in radii of its end
@@ -121,8 +90,8 @@ def draw(values: Cam) -> dict[str, Sheet]:
     bore = circle("CAM", (0.0, 0.0), BORE * (values.radius - values.eccentricity), hole=True)
     cam = [circle("CAM", (0.0, -values.eccentricity), values.radius), bore]
     half, top = 0.6 * values.roller_radius, SHAFT * values.roller_radius
-    shaft = rounded([(half, 0.0, 0.0), (half, top, 0.0), (-half, top, 0.0), (-half, 0.0, 0.0)])
-    follower = [circle("END", (0.0, 0.0), values.roller_radius), Loop(tuple(shaft), "SHAFT")]
+    shaft = polygon("SHAFT", [(half, 0.0), (half, top), (-half, top), (-half, 0.0)])
+    follower = [circle("END", (0.0, 0.0), values.roller_radius), shaft]
     return {"cam": Sheet(tuple(cam)), "follower": Sheet(tuple(follower))}
 
 

@@ -1,18 +1,20 @@
-"""The coaxial as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Co-axial escapement with its balance: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
-from itertools import pairwise
+from dataclasses import dataclass, replace
 
-from watchsim.construction.design import Conflict, Design, contact_tables, dim, told
-from watchsim.construction.outline import along, angle_of, arc_between, circle, fillet_chain, polar, turned
+from watchsim.construction import lever_parts
+from watchsim.construction import scene_builder as toml
+from watchsim.construction.design import Conflict, Design, dim
+from watchsim.construction.lever_parts import guard, horn_radius, impulse_pin, safety_roller
+from watchsim.construction.outline import along, angle_of, circle, polar, rounded, to_circle, turned
 from watchsim.construction.parts import Arms, BalanceWheel, Stone, ToothForm, balance_wheel, contour
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
-from watchsim.geometry.primitives import Arc, Edge, Line, Point
+from watchsim.geometry.primitives import Point
 
 # Which dimensions does a co-axial escapement have?
 #
@@ -153,13 +155,7 @@ class Points:
         """Polar angle of the tip that a locking face holds, lever at `lever` degrees to its side."""
         corner = self.in_movement(self.locking_corner(side), side * lever)
         direction = self.face_direction(side) + side * lever
-        return angle_of(along(corner, direction, self._to_tip_circle(corner, direction)))
-
-    def _to_tip_circle(self, start: Point, direction: float) -> float:
-        """How far along `direction` the tip circle is crossed from inside."""
-        ux, uy = cosine(direction), sine(direction)
-        ahead = start[0] * ux + start[1] * uy
-        return -ahead + math.sqrt(ahead**2 + self.values.tip_radius**2 - start[0] ** 2 - start[1] ** 2)
+        return angle_of(along(corner, direction, to_circle(corner, direction, self.values.tip_radius)))
 
 
 # What is the outline of a co-axial escape wheel?
@@ -179,7 +175,7 @@ def wheel(points: Points) -> list[Loop]:
     large = ToothForm(points.values.tip_radius, 1.5 * s, 0.02 * s, 0.42 * s, 41.0, 0.62 * s, 0.12 * s)
     small = ToothForm(points.small_radius, 0.68 * points.small_radius, 0.015 * s, 0.15 * s, 42.0, 0.25 * s, 0.05 * s)
     arms = Arms(ARMS, ARM_WIDTH * s, HUB_RADIUS * s, RIM_INNER * s, WINDOW_FILLET * s)
-    windows = [Loop(tuple(arms.window(i)), "TEETH", hole=True) for i in range(arms.number)]
+    windows = arms.windows("TEETH")
     bores = [circle(layer, (0.0, 0.0), BORE_RADIUS * s, hole=True) for layer in ("TEETH", "SMALL_TEETH")]
     undercut = points.values.undercut
     second = contour(small, undercut, "SMALL_TEETH", TEETH).moved(math.radians(points.small_turn), (0.0, 0.0))
@@ -208,11 +204,7 @@ def locking_stone(points: Points, side: int) -> Stone:
     straight = Stone(tip, face, LOCKING_WIDTH * s, LOCKING_LENGTH * s, 0.0)
     x, y = points.in_movement(straight.at(0.0, straight.width), side * points.unlocked)
     turn = face + side * points.unlocked
-    ux, uy = cosine(turn), sine(turn)
-    ahead = x * ux + y * uy
-    clear = points.values.tip_radius + UNDER * s
-    relief = -ahead + math.sqrt(ahead**2 + clear**2 - x**2 - y**2)
-    return Stone(tip, face, straight.width, straight.length, relief)
+    return replace(straight, relief=to_circle((x, y), turn, points.values.tip_radius + UNDER * s))
 
 
 def lever_stone(points: Points) -> Stone:
@@ -263,9 +255,8 @@ class Fork:
         radius = points.values.pin_radius
         self.pin_edge = PIN_EDGE * s
         self.pin_centre = points.pin_reach + (2.0 * PIN_GROUND - 1.0) * radius
-        height = points.pin_reach - self.pin_edge
-        half = math.sqrt((radius - self.pin_edge) ** 2 - (height - self.pin_centre) ** 2)
-        self.horn_radius = math.hypot(half, height) + self.pin_edge + points.values.horn_clearance
+        clearance = points.values.horn_clearance
+        self.horn_radius = horn_radius(points.pin_reach, self.pin_centre, radius, self.pin_edge, clearance)
         """Of the horns about the balance's centre, lever on the bank: past the farthest point of the pin's edge."""
 
     def balance_from_bank(self, side: int) -> Point:
@@ -280,59 +271,20 @@ class Fork:
 
 
 def fork_outline(fork: Fork) -> Loop:
-    """The fork, counter-clockwise from the left end of the neck."""
-    right = _right_half(fork)
-    neck, half, bottom = fork.neck, fork.slot_half, fork.slot_bottom
-    edges: list[Edge] = [Line(-fork.stem_half, neck, fork.stem_half, neck), *[edge for edge, _ in right]]
-    edges += [Line(half, bottom, -half, bottom), *[_mirrored(edge) for edge, _ in reversed(right)]]
-    radii = [radius for _, radius in right]
-    return Loop(tuple(fillet_chain(edges, [0.0, *radii, *reversed(radii), 0.0], closed=True)), "FORK")
-
-
-def _right_half(fork: Fork) -> list[tuple[Edge, float]]:
-    """From the neck up the outside, round the horn and down the slot; each edge with the fillet after it."""
-    s = fork.scale
+    """The fork, drawn with the lever on the second stone's bank."""
+    s, bearing = fork.scale, -90.0 + HORN_END + fork.points.bank
     centre = fork.balance_from_bank(-1)
-    bearing = -90.0 + HORN_END + fork.points.bank
-    tip_out = polar(fork.horn_radius + HORN_TIP * s, bearing, centre)
-    tip_in = polar(fork.horn_radius, bearing, centre)
-    half = fork.slot_half
-    mouth = (half, centre[1] - math.sqrt(fork.horn_radius**2 - (half - centre[0]) ** 2))
     foot, hip = (0.13 * s, fork.neck + 0.13 * s), (0.36 * s, fork.points.lever_to_balance - HIP * s)
-    return [
-        (Line(fork.stem_half, fork.neck, *foot), 0.3 * s),
-        (Line(*foot, *hip), 0.15 * s),
-        (Line(*hip, *tip_out), 0.025 * s),
-        (Line(*tip_out, *tip_in), 0.025 * s),
-        (arc_between(tip_in, mouth, centre, False), 0.015 * s),
-        (Line(*mouth, half, fork.slot_bottom), 0.08 * s),
-    ]
-
-
-def _mirrored(edge: Edge) -> Edge:
-    """The mirror image in the y axis, run through the other way (so that the material stays on the left)."""
-    if isinstance(edge, Line):
-        return Line(-edge.x1, edge.y1, -edge.x0, edge.y0)
-    return Arc(-edge.x, edge.y, edge.radius, math.pi - edge.start_angle - edge.sweep, edge.sweep)
+    outside = [(fork.stem_half, fork.neck), foot, hip, polar(fork.horn_radius + HORN_TIP * s, bearing, centre)]
+    tip, radii = polar(fork.horn_radius, bearing, centre), [share * s for share in (0.3, 0.15, 0.025, 0.025, 0.015, 0.08)]
+    return lever_parts.fork(outside, tip, (centre, fork.horn_radius), (fork.slot_half, fork.slot_bottom), radii)
 
 
 def guard_pin(fork: Fork) -> Loop:
-    """A round foot, a bar and a rounded point."""
+    """The guard: a round foot, a bar and a rounded point."""
     s = fork.scale
-    y, tip, half, slope = fork.guard_centre(), GUARD_TIP * s, GUARD_HALF * s, GUARD_SLOPE
-    foot, radius = fork.points.lever_to_balance - GUARD_FOOT * s, GUARD_FOOT_RADIUS * s
-    left, right = polar(tip, 180.0 - slope, (0.0, y)), polar(tip, slope, (0.0, y))
-    join = foot + math.sqrt(radius**2 - half**2)
-    shoulder = right[1] - (half - right[0]) * cosine(slope) / sine(slope)
-    parts: list[tuple[Edge, float]] = [
-        (arc_between((-half, join), (half, join), (0.0, foot), True), 0.025 * s),
-        (Line(half, join, half, shoulder), 0.0),
-        (Line(half, shoulder, *right), 0.0),
-        (arc_between(right, left, (0.0, y), True), 0.0),
-        (Line(*left, -half, shoulder), 0.0),
-        (Line(-half, shoulder, -half, join), 0.025 * s),
-    ]
-    return Loop(tuple(fillet_chain([edge for edge, _ in parts], [r for _, r in parts], closed=True)), "GUARD")
+    foot = (fork.points.lever_to_balance - GUARD_FOOT * s, GUARD_FOOT_RADIUS * s)
+    return guard("GUARD", fork.guard_centre(), GUARD_TIP * s, GUARD_HALF * s, GUARD_SLOPE, foot, 0.025 * s)
 
 
 # What is the outline of a co-axial escapement's lever?
@@ -403,9 +355,7 @@ def body(points: Points, fork: Fork) -> Loop:
         (second.at(0.5 * second.length, -wall - 0.04 * s), 0.12 * s),
         *mouth(second, EXPOSED * s, s),
     ]
-    places = [place for place, _ in corners]
-    edges: list[Edge] = [Line(*a, *b) for a, b in pairwise([*places, places[0]])]
-    return Loop(tuple(fillet_chain(edges, [radius for _, radius in [*corners[1:], corners[0]]], closed=True)), "ARMS")
+    return rounded("ARMS", corners)
 
 
 def mouth(stone: Stone, exposed: float, scale: float) -> list[Part]:
@@ -452,14 +402,15 @@ ARMS_ROLLER = 4
 
 def roller(points: Points) -> list[Loop]:
     """Table with the staff's hole, stone, pin, safety roller; the balance's rim."""
-    s, fork = points.scale, Fork(points)
+    s, fork, radius = points.scale, Fork(points), points.values.pin_radius
     turn = math.radians(points.fork_bearing - 90.0)
+    pin = impulse_pin(points.pin_reach, fork.pin_centre, radius, (1.0 - 2.0 * PIN_GROUND) * radius, fork.pin_edge)
     return [
         circle("TABLE", (0.0, 0.0), _table_radius(points)),
         circle("TABLE", (0.0, 0.0), STAFF_RADIUS * s, hole=True),
         roller_stone(points).loop("IMPULSE_STONE", EDGE * s),
-        pin(points, fork).moved(turn, (0.0, 0.0)),
-        safety(s).moved(turn, (0.0, 0.0)),
+        pin.moved(turn, (0.0, 0.0)),
+        safety_roller(SAFETY_RADIUS * s, CRESCENT_DEPTH * s, CRESCENT_HALF, CRESCENT_EDGE * s).moved(turn, (0.0, 0.0)),
         circle("SAFETY", (0.0, 0.0), STAFF_RADIUS * s, hole=True),
         *wheel_of(points).rim(),
     ]
@@ -475,127 +426,57 @@ def _table_radius(points: Points) -> float:
     return TABLE_RADIUS * points.stone_reach / 1.0125
 
 
-def pin(points: Points, fork: Fork) -> Loop:
-    """A round pin with part of its diameter ground away: the flat looks outwards, its edges are rounded."""
-    centre, radius = (0.0, -fork.pin_centre), points.values.pin_radius
-    height = (1.0 - 2.0 * PIN_GROUND) * radius
-    half = math.sqrt(radius**2 - height**2)
-    left, right = (-half, -points.pin_reach), (half, -points.pin_reach)
-    edges: list[Edge] = [Line(*left, *right), arc_between(right, left, centre, True)]
-    return Loop(tuple(fillet_chain(edges, [fork.pin_edge, fork.pin_edge], closed=True)), "PIN")
-
-
-def safety(scale: float) -> Loop:
-    """The safety roller: a disc with a hollow for the guard pin's point."""
-    radius = SAFETY_RADIUS * scale
-    bottom = radius - CRESCENT_DEPTH * scale
-    right, left = (polar(radius, -90.0 + side * CRESCENT_HALF) for side in (1.0, -1.0))
-    half, height = right[0], -right[1]
-    hollow = (half**2 + (height - bottom) ** 2) / (2.0 * (height - bottom))  # circle through both edges and the bottom
-    edges: list[Edge] = [
-        arc_between(right, left, (0.0, 0.0), True),
-        arc_between(left, right, (0.0, -(bottom + hollow)), False),
-    ]
-    return Loop(tuple(fillet_chain(edges, [CRESCENT_EDGE * scale] * 2, closed=True)), "SAFETY")
-
-
-# What does the scene of a co-axial escapement say?
-
 CLEAR = 1e-4  # degrees by which lever and wheel stand off what they rest on
 
-TEXT = """\
-# A co-axial escapement after George Daniels: the large wheel locks on two stones of the lever and pushes the roller's stone
-# (direct impulse, balance counter-clockwise); the small one pushes the lever's third stone (indirect impulse, through fork and
-# pin). Drawn to these dimensions:
-{dimensions}
-
-[scene]
-title  = "Co-axial escapement, {values.frequency:.0f} vph, 8 + 8 teeth"
-schema = 1
-
-[bodies.wheel]                       # turns clockwise; the inertia includes the train as felt here
-drawing  = "escape_wheel.dxf"
-layers   = ["TEETH", "SMALL_TEETH"]
-pivot    = "PIVOT"
-position = ["0 mm", "0 mm"]
-angle    = "{wheel_angle:.7f}°"      # a tooth a few nanometres off the first locking face
-inertia  = "{values.wheel_inertia:.15g} mg·cm²"
-
-[bodies.lever]
-drawing  = "lever.dxf"
-layers   = ["LOCKING_STONES", "IMPULSE_STONE", "FORK", "GUARD", "ARMS"]
-pivot    = "PIVOT"
-position = ["0 mm", "{lever_y!r} mm"]
-angle    = "{lever_angle:.15g}°"     # a few nanometres off the bank
-inertia  = "{values.lever_inertia:.15g} mg·cm²"
-
-[bodies.balance]                     # hangs at the end of a swing, its pin far outside the fork
-drawing  = "roller.dxf"
-layers   = ["TABLE", "SAFETY", "PIN", "IMPULSE_STONE"]
-draw     = ["RIM"]
-pivot    = "PIVOT"
-position = ["{balance[0]!r} mm", "{balance[1]!r} mm"]
-angle    = "{start:.15g}°"
-inertia  = "{values.balance_inertia:.15g} mg·cm²"
-
-[bodies.banking]
-drawing  = "banking.dxf"
-layers   = ["PINS"]
-pivot    = "PIVOT"
-position = ["0 mm", "0 mm"]
-motion   = "fixed"
-
-[[springs]]
-body      = "balance"
-frequency = "{values.frequency:.15g} vph"
-draw      = {hairspring}
-
-[[torques]]
-body  = "wheel"
-value = "{torque:.15g} µN·m"
-
-[[damping]]
-body     = "balance"
-q_factor = {values.q_factor!r}
-
-{contacts}
-[run]
-duration  = "10 s"
-tolerance = 1e-9
-
-[timegrapher]
-lift_angle = "{values.lift_angle:.15g}°"
-"""
-
-CONTACTS: tuple[tuple[str, str] | tuple[str, str, str], ...] = (
-    ("wheel.TEETH", "lever.LOCKING_STONES", "locking"),
-    ("wheel.TEETH", "balance.IMPULSE_STONE", "direct impulse"),
-    ("wheel.SMALL_TEETH", "lever.IMPULSE_STONE", "indirect impulse"),
-    ("lever.FORK", "balance.PIN", "unlocking, and the indirect impulse handed on"),
-    ("lever.GUARD", "balance.SAFETY", "safety action: never meets in normal running"),
-    ("lever.ARMS", "banking.PINS"),
-)
+WORDS = """\
+A co-axial escapement after George Daniels: the large wheel locks on two stones of the lever and pushes the roller's stone
+(direct impulse, balance counter-clockwise); the small one pushes the lever's third stone (indirect impulse, through fork and
+pin). Drawn to these dimensions:"""
 
 
 def scene_text(values: Coaxial) -> str:
     """The text of scene.toml: wheel locked on the first stone, lever on its bank, the balance about to be let go."""
     points = Points(values)
     lever = points.bank - CLEAR
-    return TEXT.format(
-        dimensions=told(values),
-        values=values,
-        contacts=contact_tables(values, *CONTACTS),
-        wheel_angle=points.locked_tip(FIRST, lever) + CLEAR,
-        lever_y=points.lever_pivot[1],
-        lever_angle=round(lever, 10),
-        balance=points.balance_pivot,
-        start=-values.start,
-        hairspring=wheel_of(points).hairspring(round(points.fork_bearing, 1)),
-        torque=-values.torque,
+    tooth = f"{points.locked_tip(FIRST, lever) + CLEAR:.7f}°"
+    return toml.scene(
+        toml.head(values, WORDS, f"Co-axial escapement, {values.frequency:.0f} vph, 8 + 8 teeth"),
+        toml.body(
+            *("wheel", "escape_wheel", "TEETH SMALL_TEETH", "turns clockwise; the inertia includes the train as felt here"),
+            position=toml.ORIGIN,
+            angle=toml.Noted(tooth, "a tooth a few nanometres off the first locking face", 6),
+            inertia=f"{values.wheel_inertia:.15g} mg·cm²",
+        ),
+        toml.body(
+            *("lever", "lever", "LOCKING_STONES IMPULSE_STONE FORK GUARD ARMS"),
+            position=toml.at(0, points.lever_pivot[1]),
+            angle=toml.Noted(f"{round(lever, 10):.15g}°", "a few nanometres off the bank", 5),
+            inertia=f"{values.lever_inertia:.15g} mg·cm²",
+        ),
+        toml.body(
+            *("balance", "roller", "TABLE SAFETY PIN IMPULSE_STONE"),
+            "hangs at the end of a swing, its pin far outside the fork",
+            draw="RIM",
+            position=toml.at(*points.balance_pivot),
+            angle=f"{-values.start:.15g}°",
+            inertia=f"{values.balance_inertia:.15g} mg·cm²",
+        ),
+        toml.banking(),
+        toml.hairspring(values.frequency, wheel_of(points).hairspring(round(points.fork_bearing, 1))),
+        toml.torque("wheel", f"{-values.torque:.15g} µN·m"),
+        toml.q_factor("balance", values.q_factor),
+        toml.contacts(
+            values,
+            "wheel.TEETH lever.LOCKING_STONES: locking",
+            "wheel.TEETH balance.IMPULSE_STONE: direct impulse",
+            "wheel.SMALL_TEETH lever.IMPULSE_STONE: indirect impulse",
+            "lever.FORK balance.PIN: unlocking, and the indirect impulse handed on",
+            "lever.GUARD balance.SAFETY: safety action: never meets in normal running",
+            "lever.ARMS banking.PINS",
+        ),
+        toml.run("10 s"),
+        toml.timegrapher(f"{values.lift_angle:.15g}°"),
     )
-
-
-# Which sheets does a co-axial escapement need?
 
 
 def sheets(values: Coaxial) -> dict[str, Sheet]:
@@ -604,8 +485,6 @@ def sheets(values: Coaxial) -> dict[str, Sheet]:
     parts = {"escape_wheel": wheel(points), "lever": lever(points), "roller": roller(points), "banking": banking(points)}
     return {name: Sheet(tuple(loops)) for name, loops in parts.items()}
 
-
-# Which dimensions of a co-axial escapement do not go together?
 
 INSIDE = 1.0  # degrees of the balance by which the roller stone must be inside the overlap when the wheel is let go
 FREE = 0.75  # degrees of the wheel by which a waiting tooth must stand outside an overlap
@@ -664,7 +543,5 @@ def guard_freedom(points: Points) -> float:
     cosine = (y * y + d * d - reach * reach) / (2.0 * y * d)
     return points.bank - math.degrees(math.acos(min(1.0, cosine)))
 
-
-# What makes the co-axial escapement a design?
 
 DESIGN = Design("coaxial", "Co-axial escapement with its balance", Coaxial, sheets, scene_text, conflicts)

@@ -1,4 +1,4 @@
-"""The cycloidal pair as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Cycloidal wheel and pinion: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -7,16 +7,13 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from watchsim.construction.design import Conflict, Design, Impossible, dim
+from watchsim.construction.design import CHOSEN, Conflict, Design, Impossible, dim
 from watchsim.construction.outline import arc_between, polar
 from watchsim.construction.parts import arc_through, gear_outline, gear_pair_scene, other_flank
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Edge, Line, Point
 
-# Which numbers does the designer of a wheel and pinion of a watch train choose?
-
-CHOSEN = "chosen for this design"
 HALF = "half a pitch"
 
 
@@ -202,8 +199,6 @@ def lead_after_centres(values: CycloidalPair) -> float:
     return Wheel(values).last_roll / 2.0 / (2.0 * math.pi / values.pinion_teeth)
 
 
-# Which dimensions of a wheel with cycloidal teeth and its pinion do not go together?
-
 LEAST_TIP, LEAST_PLAY, LEAST_ROOM = 0.02, 0.02, 0.05  # modules
 
 
@@ -228,9 +223,6 @@ def conflicts(values: CycloidalPair) -> Iterator[Conflict]:
     if distance(values) - pinion.tip_radius - wheel.floor_radius < LEAST_ROOM * module:
         least = (pinion.tip_radius - pinion.pitch_radius) / module - values.spread + LEAST_ROOM
         yield Conflict("wheel_dedendum", f"lets the leaves meet the floor of the wheel: it must be at least {least:.3g}")
-
-
-# What makes a wheel with cycloidal teeth and its pinion a design?
 
 
 def draw(values: CycloidalPair) -> dict[str, Sheet]:

@@ -1,4 +1,4 @@
-"""The cylinder as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Cylinder escapement of a watch with its balance: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ from functools import cached_property
 
 from scipy.optimize import brentq
 
-from watchsim.construction.design import Conflict, Design, Impossible, contact_tables, dim, told
+from watchsim.construction import scene_builder as toml
+from watchsim.construction.design import CHOSEN, ESTIMATE, Conflict, Design, Impossible, dim
 from watchsim.construction.outline import angle_of, arc_between, arc_of_radius, circle, fillet_chain, polar
 from watchsim.construction.parts import Arms, BalanceWheel, balance_wheel
 from watchsim.drawing.write import Sheet
@@ -21,7 +22,7 @@ from watchsim.geometry.primitives import Edge, Line, Point
 # Angles of lift and lock are the balance's, of teeth and drop the wheel's.
 
 HEADRICK = "Headrick 1997, Clock and Watch Escapement Mechanics, ch. 18"
-CHOSEN, ESTIMATE, USUAL = "chosen for this design", "estimate: not published", "usual in cylinder watches"
+USUAL = "usual in cylinder watches"
 
 
 @dataclass(frozen=True)
@@ -232,7 +233,7 @@ def wheel(shell: Shell) -> list[Loop]:
     return [
         *(tooth(shell).moved(math.radians(i * shell.pitch), (0.0, 0.0)) for i in range(shell.values.teeth)),
         Loop(tuple(edge for i in range(shell.values.teeth) for edge in _pillar(shell, i * shell.pitch)), "RIM"),
-        *(Loop(tuple(arms.window(i)), "RIM", hole=True) for i in range(ARMS)),
+        *arms.windows("RIM"),
         circle("RIM", (0.0, 0.0), BORE * d, hole=True),
     ]
 
@@ -265,8 +266,6 @@ def wheel_of(shell: Shell) -> BalanceWheel:
     """Rim and hairspring of the balance."""
     return balance_wheel(shell.values.balance_inertia, shell.outer, 0.3 * shell.inner, BALANCE_ARMS)
 
-
-# Which dimensions of a cylinder escapement do not go together?
 
 LEAST_WALL = 0.04  # of the outer radius
 PARTS = 20  # of an edge
@@ -334,76 +333,40 @@ def _distances(made: Shell, bearing: float) -> list[float]:
     return [math.dist(edge.point(i / PARTS), made.balance) for edge in edges for i in range(PARTS + 1)]
 
 
-# What does the scene of a cylinder escapement say?
-
 CLEAR = 1e-4  # degrees by which the tooth stands off the shell at the start
 
-TEXT = """\
-# A cylinder escapement: teeth rest on the cylinder, a half shell on the balance's arbor, outside and inside by turns, while the
-# balance swings on; in between their inclined faces lift its lips. Drawn to these dimensions:
-{dimensions}
-
-[scene]
-title  = "Cylinder escapement, {values.frequency:.0f} vph, {values.teeth} teeth"
-schema = 1
-
-[bodies.wheel]                       # turns clockwise
-drawing  = "escape_wheel.dxf"
-layers   = ["TEETH"]
-draw     = ["RIM"]
-pivot    = "PIVOT"
-position = ["0 mm", "0 mm"]
-angle    = "{wheel_angle!r}°"        # a tooth just off the outside of the shell
-inertia  = "{values.wheel_inertia:.15g} mg·cm²"      # with the train as felt here
-
-[bodies.balance]                     # hangs at the end of a swing
-drawing  = "balance.dxf"
-layers   = ["SHELL"]
-draw     = ["BALANCE"]
-pivot    = "PIVOT"
-position = ["0 mm", "{values.centre_distance!r} mm"]
-angle    = "{values.start!r}°"
-inertia  = "{values.balance_inertia:.15g} mg·cm²"
-
-[[springs]]
-body      = "balance"
-frequency = "{values.frequency:.15g} vph"
-draw      = {hairspring}
-
-[[torques]]
-body  = "wheel"
-value = "{torque!r} µN·m"
-
-[[damping]]
-body     = "balance"
-q_factor = {values.q_factor!r}
-
-{contacts}
-[run]
-duration  = "20 s"
-tolerance = 1e-12
-
-[timegrapher]
-lift_angle = "{values.lift:.15g}°"
-"""
-
-CONTACTS: tuple[tuple[str, str] | tuple[str, str, str], ...] = (("wheel.TEETH", "balance.SHELL"),)
+WORDS = """\
+A cylinder escapement: teeth rest on the cylinder, a half shell on the balance's arbor, outside and inside by turns, while the
+balance swings on; in between their inclined faces lift its lips. Drawn to these dimensions:"""
 
 
 def scene_text(values: Cylinder) -> str:
     """The text of scene.toml: a tooth at rest on the outside of the shell, the balance about to be let go."""
     made = shell(values)
-    return TEXT.format(
-        dimensions=told(values),
-        values=values,
-        contacts=contact_tables(values, *CONTACTS),
-        wheel_angle=round((made.rests_outside + values.tooth_width / 2.0 + CLEAR) % made.pitch, 9),
-        hairspring=wheel_of(made).hairspring(90.0),
-        torque=-values.torque,
+    wheel_angle = round((made.rests_outside + values.tooth_width / 2.0 + CLEAR) % made.pitch, 9)
+    return toml.scene(
+        toml.head(values, WORDS, f"Cylinder escapement, {values.frequency:.0f} vph, {values.teeth} teeth"),
+        toml.body(
+            *("wheel", "escape_wheel", "TEETH", "turns clockwise"),
+            draw="RIM",
+            position=toml.ORIGIN,
+            angle=toml.Noted(f"{wheel_angle!r}°", "a tooth just off the outside of the shell"),
+            inertia=toml.Noted(f"{values.wheel_inertia:.15g} mg·cm²", "with the train as felt here", 6),
+        ),
+        toml.body(
+            *("balance", "balance", "SHELL", "hangs at the end of a swing"),
+            draw="BALANCE",
+            position=toml.at(0, values.centre_distance),
+            angle=f"{values.start!r}°",
+            inertia=f"{values.balance_inertia:.15g} mg·cm²",
+        ),
+        toml.hairspring(values.frequency, wheel_of(made).hairspring(90.0)),
+        toml.torque("wheel", f"{-values.torque!r} µN·m"),
+        toml.q_factor("balance", values.q_factor),
+        toml.contacts(values, "wheel.TEETH balance.SHELL"),
+        toml.run("20 s", "1e-12"),
+        toml.timegrapher(f"{values.lift:.15g}°"),
     )
-
-
-# What makes the cylinder escapement a design?
 
 
 def draw(values: Cylinder) -> dict[str, Sheet]:

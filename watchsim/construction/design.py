@@ -1,4 +1,20 @@
-"""Are the outlines of a sheet sound, once they are read back from its file?"""
+"""What is a design: dimensions, and how drawings and a scene follow from them?
+
+A design is a module of this package, or one that an entry point of the group "watchsim.designs" names, which defines DESIGN:
+
+    @dataclass(frozen=True)
+    class Pendulum:                                    # its values: one field per dimension, in the dimension's own unit
+        length: float = dim(200.0, "mm", 10.0, 2000.0, "from the pivot to the middle of the bob", CHOSEN)
+
+    def draw(values: Pendulum) -> dict[str, Sheet]: ...     # file name without ending -> outlines, millimetres
+    def scene(values: Pendulum) -> str: ...                 # by scene_builder; `drawing = "bob.dxf"` names a sheet
+    def conflicts(values: Pendulum) -> Iterator[Conflict]: ...  # what cannot be drawn or cannot work, and why
+
+    DESIGN = Design("pendulum", "Simple pendulum", Pendulum, draw, scene, conflicts)
+
+Limits of single dimensions are checked before `conflicts` is called, and nothing is drawn where either objects. Everything is a
+function of the values alone, so that equal values give equal bytes.
+"""
 
 from __future__ import annotations
 
@@ -6,15 +22,14 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, fields
 from functools import cached_property, lru_cache
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.read import SNAP, read_data
 from watchsim.drawing.write import Sheet
 
-# What is a dimension of a design: which number may a designer choose, and within which limits?
-
 _KEY = "dimension"
+CHOSEN, ESTIMATE = "chosen for this design", "estimate: not published"  # sources of many dimensions
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,78 +63,13 @@ class Dimension:
 
 def dim(default: float, unit: str, low: float, high: float, meaning: str, source: str) -> Any:
     """The field of a design's values that holds one dimension; a whole number as default makes it a count."""
-    told = {"meaning": meaning, "unit": unit, "default": default, "low": low, "high": high, "source": source}
-    return field(default=default, metadata={_KEY: {**told, "count": isinstance(default, int)}})
+    metadata = {"meaning": meaning, "unit": unit, "default": default, "low": low, "high": high, "source": source}
+    return field(default=default, metadata={_KEY: {**metadata, "count": isinstance(default, int)}})
 
 
 def dimensions_of(values: type[Any]) -> tuple[Dimension, ...]:
     """The dimensions that a dataclass of values declares with `dim`, in its order."""
     return tuple(Dimension(one.name, **one.metadata[_KEY]) for one in fields(values) if _KEY in one.metadata)
-
-
-# How are the contacts of a design written into its scene?
-
-NOTED = 37  # column at which remarks begin
-
-
-class Law(Protocol):
-    """Dimensions with the two coefficients that all contacts of a design share."""
-
-    @property
-    def friction(self) -> float: ...
-
-    @property
-    def restitution(self) -> float: ...
-
-
-def contact_tables(law: Law, *pairs: tuple[str, str] | tuple[str, str, str]) -> str:
-    """One [[contacts]] table for each pair of sides, "body.LAYER"; a third text is a remark behind the heading."""
-    return "\n".join(_table(law, *pair) for pair in pairs)
-
-
-def _table(law: Law, first: str, second: str, remark: str = "") -> str:
-    heading = f"{'[[contacts]]':{NOTED}}# {remark}" if remark else "[[contacts]]"
-    return f"""\
-{heading}
-between     = ["{first}", "{second}"]
-friction    = {law.friction!r}
-restitution = {law.restitution!r}
-"""
-
-
-# How is the leaf of a design written into its scene?
-
-STEEL = 200e9  # Pa
-
-
-class Leaf(Protocol):
-    """Dimensions with those of a leaf of steel and of the arm at which it presses, mm."""
-
-    @property
-    def leaf_length(self) -> float: ...
-
-    @property
-    def leaf_width(self) -> float: ...
-
-    @property
-    def leaf_thickness(self) -> float: ...
-
-    @property
-    def leaf_arm(self) -> float: ...
-
-
-def leaf_text(values: Leaf) -> str:
-    """What stands between the braces of `leaf = { }`."""
-    sizes = (
-        ("length", values.leaf_length),
-        ("width", values.leaf_width),
-        ("thickness", values.leaf_thickness),
-        ("arm", values.leaf_arm),
-    )
-    return ", ".join([f'modulus = "{STEEL * 1e-9:g} GPa"', *(f'{name} = "{size!r} mm"' for name, size in sizes)])
-
-
-# Are the outlines of a sheet sound, once they are read back from its file?
 
 
 @lru_cache(maxsize=256)
@@ -141,24 +91,7 @@ def unsound(sheet: Sheet, name: str) -> Iterator[str]:
         yield f"the outline of {name}, layer {layer}, would {what}{at}"
 
 
-# What is a design: dimensions, and how drawings and a scene follow from them?
-#
-# A design is declared in three steps:
-#
-#     @dataclass(frozen=True)
-#     class Pendulum:                                    # its values: one field per dimension, in the dimension's own unit
-#         length: float = dim(200.0, "mm", 10.0, 2000.0, "from the pivot to the middle of the bob", "chosen")
-#
-#     def draw(values: Pendulum) -> dict[str, Sheet]: ...     # file name without ending -> outlines, millimetres
-#     def scene(values: Pendulum) -> str: ...                 # commented TOML; `drawing = "bob.dxf"` names a sheet
-#     def conflicts(values: Pendulum) -> Iterator[Conflict]: ...  # what cannot be drawn or cannot work, and why
-#
-#     DESIGN = Design("pendulum", "Simple pendulum", Pendulum, draw, scene, conflicts)
-#
-# and named in construction/known.py. Limits of single dimensions are checked before `conflicts` is asked, and nothing is drawn
-# where either objects. Everything is a function of the values alone, so that equal values give equal bytes.
-
-Values = Any  # a frozen dataclass whose fields are declared with construction.dimension.dim
+Values = Any  # a frozen dataclass whose fields are declared with `dim`
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,16 +113,6 @@ class Impossible(ValueError):
 def no_conflicts(_values: Values) -> tuple[Conflict, ...]:
     """Of a design whose limits say it all."""
     return ()
-
-
-def told(values: Values) -> str:
-    """The dimensions as comments of a TOML file, those that differ from the default marked."""
-    lines = []
-    for one in dimensions_of(type(values)):
-        number = getattr(values, one.name)
-        usual = "" if number == one.default else f" (default {one.shortly(one.default)})"
-        lines.append(f"#   {one.name} = {one.shortly(number)}{usual}: {one.meaning}")
-    return "\n".join(lines)
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""The detent as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Detent escapement of a marine chronometer with its balance: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -6,8 +6,9 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from watchsim.construction.design import Conflict, Design, Impossible, contact_tables, dim, told
-from watchsim.construction.outline import along, angle_of, circle, polar, rounded, turned
+from watchsim.construction import scene_builder as toml
+from watchsim.construction.design import CHOSEN, ESTIMATE, Conflict, Design, Impossible, dim
+from watchsim.construction.outline import along, angle_of, circle, polar, polygon, to_circle, turned
 from watchsim.construction.parts import Arms, Stone, ToothForm, contour
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
@@ -18,8 +19,7 @@ from watchsim.geometry.primitives import Point
 # A marine chronometer's size. Angles are those of the detent, where nothing else is said.
 
 LAYOUT = "construction by overlapping circles, docs/guide/mechanisms.md"
-USUAL, CHOSEN = "usual in marine chronometers", "chosen for this design"
-ESTIMATE = "estimate: not published"
+USUAL = "usual in marine chronometers"
 
 
 @dataclass(frozen=True)
@@ -128,12 +128,8 @@ class Points:
     def wheel_angle(self) -> float:
         """Polar angle of the tip that the locking face holds, the detent on its bank."""
         cx, cy = self.locking_corner()
-        x, y = cx + self.pivot[0], cy + self.pivot[1]
-        ux, uy = cosine(self.face_direction()), sine(self.face_direction())
-        ahead = -(x * ux + y * uy)
-        return angle_of(
-            along((x, y), self.face_direction(), ahead + math.sqrt(ahead**2 + self.values.tip_radius**2 - x * x - y * y))
-        )
+        corner, way = (cx + self.pivot[0], cy + self.pivot[1]), self.face_direction()
+        return angle_of(along(corner, way, to_circle(corner, way, self.values.tip_radius)))
 
     def pin_bearing(self) -> float:
         """Direction from B to the discharging stone's middle as the tooth is let go: it touches the passing spring's tip."""
@@ -170,7 +166,7 @@ def wheel(points: Points) -> list[Loop]:
     s, values = points.scale, points.values
     form = ToothForm(values.tip_radius, 5.0 * s, 0.05 * s, 0.75 * s, 40.0, 1.3 * s, 0.2 * s)
     arms = Arms(ARMS, ARM_WIDTH * s, HUB * s, RIM * s, WINDOW_FILLET * s)
-    windows = [Loop(tuple(arms.window(i)), "TEETH", hole=True) for i in range(ARMS)]
+    windows = arms.windows("TEETH")
     return [contour(form, values.undercut, "TEETH", values.teeth), *windows, circle("TEETH", (0.0, 0.0), BORE * s, hole=True)]
 
 
@@ -199,10 +195,10 @@ def discharging_roller(points: Points) -> float:
     return points.pin_centre - 0.2 * points.values.discharge_radius
 
 
-def _along(points: Points, corners: list[tuple[float, float, float]]) -> list[tuple[float, float, float]]:
-    """Corners (along the passing spring's face from P, to its left, fillet) in the detent's frame."""
+def _beside(points: Points, x: float, y: float) -> Point:
+    """The place in the detent's frame that is x along the passing spring's face from P and y to its left."""
     c, s = math.cos(math.radians(points.blade)), math.sin(math.radians(points.blade))
-    return [(c * x - s * y, s * x + c * y, radius) for x, y, radius in corners]
+    return (c * x - s * y, s * x + c * y)
 
 
 def bar_side(points: Points) -> float:
@@ -215,16 +211,16 @@ def detent(points: Points) -> list[Loop]:
     s = points.scale
     end = points.blade_reach - HORN_SHORT * s
     left, right = bar_side(points), bar_side(points) - BAR * s
-    bar = _along(points, [(0.0, right, 0.0), (end, right, 0.0), (end, left, 0.0), (0.0, left, 0.0)])
-    x, y, _ = _along(points, [(end - HORN_RADIUS * s, -BLADE * s - HORN_RADIUS * s, 0.0)])[0]
+    bar = [_beside(points, *corner) for corner in ((0.0, right), (end, right), (end, left), (0.0, left))]
+    horn = _beside(points, end - HORN_RADIUS * s, -BLADE * s - HORN_RADIUS * s)
     corner, face = points.locking_corner(), points.face_direction()
     # Out to the middle of the bar.
     out = (math.hypot(*corner) * math.sin(math.radians(math.degrees(math.atan2(corner[1], corner[0])) - points.blade))) - left
     stone = Stone(corner, face, LOCKING_WIDTH * s, out + 0.6 * BAR * s, LOCKING_WIDTH * s * math.tan(math.radians(8.0)))
     return [
         stone.loop("STONE", EDGE * s),
-        Loop(tuple(rounded(bar)), "BAR"),
-        circle("HORN", (x, y), HORN_RADIUS * s),
+        polygon("BAR", bar),
+        circle("HORN", horn, HORN_RADIUS * s),
         circle("HUB", (0.0, 0.0), DETENT_HUB * s),
         circle("HUB", (0.0, 0.0), DETENT_BORE * s, hole=True),
     ]
@@ -232,8 +228,7 @@ def detent(points: Points) -> list[Loop]:
 
 def root(points: Points) -> Point:
     """Where the passing spring is fixed on the detent, in its frame."""
-    x, y, _ = _along(points, [(points.blade_reach - BLADE_LENGTH * points.scale, -0.5 * BLADE * points.scale, 0.0)])[0]
-    return (x, y)
+    return _beside(points, points.blade_reach - BLADE_LENGTH * points.scale, -0.5 * BLADE * points.scale)
 
 
 def passing(points: Points) -> list[Loop]:
@@ -241,137 +236,89 @@ def passing(points: Points) -> list[Loop]:
     s = points.scale
     rx, ry = root(points)
     first, last = points.blade_reach - BLADE_LENGTH * s, points.blade_reach
-    corners = [(first, -BLADE * s, 0.0), (last, -BLADE * s, 0.0), (last, 0.0, 0.0), (first, 0.0, 0.0)]
-    leaf = [(x - rx, y - ry, radius) for x, y, radius in _along(points, corners)]
-    return [Loop(tuple(rounded(leaf)), "LEAF")]
+    corners = [(first, -BLADE * s), (last, -BLADE * s), (last, 0.0), (first, 0.0)]
+    return [polygon("LEAF", [(x - rx, y - ry) for x, y in (_beside(points, *corner) for corner in corners)])]
 
 
 def banking(points: Points) -> list[Loop]:
     """The screw against which the bar rests."""
     s = points.scale
-    x, y, _ = _along(points, [(BANK_AT * s, bar_side(points) + BANK_RADIUS * s, 0.0)])[0]
+    x, y = _beside(points, BANK_AT * s, bar_side(points) + BANK_RADIUS * s)
     return [circle("SCREW", (x + points.pivot[0], y + points.pivot[1]), BANK_RADIUS * s)]
 
 
-# What does the scene of a detent escapement say?
-
 CLEAR = 1e-4  # degrees by which tooth and passing spring stand off what they rest on at the start
 
-TEXT = """\
-# A detent escapement, as in a marine chronometer: the wheel is locked by a detent that a spring holds on its bank. As the
-# balance swings counter-clockwise its discharging stone lifts the passing spring, and with it the detent; a tooth falls on the
-# impulse stone. On the way back it bends the passing spring alone, and nothing else happens. Drawn to these dimensions:
-{dimensions}
-
-[scene]
-title  = "Detent escapement, {hertz:g} Hz, {values.teeth} teeth"
-schema = 1
-
-[bodies.wheel]                       # turns clockwise; the inertia includes the train as felt here
-drawing  = "escape_wheel.dxf"
-layers   = ["TEETH"]
-pivot    = "PIVOT"
-position = ["0 mm", "0 mm"]
-angle    = "{wheel_angle!r}°"        # a tooth just off the locking face
-inertia  = "{values.wheel_inertia:.15g} mg·cm²"
-
-[bodies.detent]
-drawing  = "detent.dxf"
-layers   = ["STONE", "BAR", "HORN", "HUB"]
-pivot    = "PIVOT"
-position = ["{pivot[0]!r} mm", "{pivot[1]!r} mm"]
-angle    = "{off_bank!r}°"           # just off its bank
-inertia  = "{values.detent_inertia:.15g} mg·cm²"
-
-[bodies.passing]                     # the passing spring: a light leaf, pressed on the detent's horn by its own spring
-on       = "detent"
-drawing  = "passing_spring.dxf"
-layers   = ["LEAF"]
-pivot    = "PIVOT"
-position = ["{root[0]!r} mm", "{root[1]!r} mm"]
-angle    = "{clear!r}°"
-mass     = "{mass:.6g} mg"
-inertia  = "{values.passing_inertia:.15g} mg·cm²"
-
-[bodies.balance]                     # hangs at the end of a swing
-drawing  = "roller.dxf"
-layers   = ["TABLE", "IMPULSE_STONE", "ROLLER", "DISCHARGE"]
-pivot    = "PIVOT"
-position = ["{balance[0]!r} mm", "{balance[1]!r} mm"]
-angle    = "{start!r}°"
-inertia  = "{values.balance_inertia:.15g} mg·cm²"
-
-[bodies.banking]
-drawing  = "banking.dxf"
-layers   = ["SCREW"]
-pivot    = "PIVOT"
-position = ["0 mm", "0 mm"]
-motion   = "fixed"
-
-[[springs]]
-body      = "balance"
-frequency = "{values.frequency:.15g} vph"
-
-[[springs]]                          # bent: holds the detent on its bank
-body      = "detent"
-stiffness = "{values.detent_stiffness:.15g} µN·m/rad"
-rest      = "{detent_rest:.9g}°"
-
-[[springs]]                          # bent: holds the leaf on the horn
-body      = "passing"
-stiffness = "{values.passing_stiffness:.15g} µN·m/rad"
-rest      = "{passing_rest:.9g}°"
-
-[[torques]]
-body  = "wheel"
-value = "{torque!r} µN·m"
-
-[[damping]]
-body     = "balance"
-q_factor = {values.q_factor!r}
-
-{contacts}
-[run]
-duration  = "10 s"
-tolerance = 1e-9
-
-[timegrapher]
-lift_angle = "{lift:.4g}°"           # from the letting go of the tooth to the end of the impulse
-"""
-
-CONTACTS: tuple[tuple[str, str] | tuple[str, str, str], ...] = (
-    ("wheel.TEETH", "detent.STONE", "locking"),
-    ("wheel.TEETH", "balance.IMPULSE_STONE", "impulse"),
-    ("passing.LEAF", "balance.DISCHARGE", "unlocking, and passing on the way back"),
-    ("passing.LEAF", "detent.HORN"),
-    ("detent.BAR", "banking.SCREW"),
-)
+WORDS = """\
+A detent escapement, as in a marine chronometer: the wheel is locked by a detent that a spring holds on its bank. As the
+balance swings counter-clockwise its discharging stone lifts the passing spring, and with it the detent; a tooth falls on the
+impulse stone. On the way back it bends the passing spring alone, and nothing else happens. Drawn to these dimensions:"""
 
 
 def scene_text(values: Detent) -> str:
     """The text of scene.toml: a tooth locked, the detent on its bank, the balance about to be let go."""
     points = Points(values)
-    return TEXT.format(
-        dimensions=told(values),
-        values=values,
-        contacts=contact_tables(values, *CONTACTS),
-        hertz=values.frequency / 7200.0,
-        wheel_angle=round(points.wheel_angle() % points.pitch + CLEAR, 9),
-        pivot=points.pivot,
-        off_bank=-CLEAR,
-        root=root(points),
-        clear=CLEAR,
-        mass=3.0 * values.passing_inertia * 1e2 / (BLADE_LENGTH * points.scale) ** 2,
-        balance=points.balance_pivot,
-        start=-values.start,
-        detent_rest=math.degrees(values.detent_torque / values.detent_stiffness),
-        passing_rest=-math.degrees(values.passing_torque / values.passing_stiffness),
-        torque=-values.torque,
-        lift=2.0 * points.half_impulse - values.inside,
+    detent_rest = math.degrees(values.detent_torque / values.detent_stiffness)
+    passing_rest = -math.degrees(values.passing_torque / values.passing_stiffness)
+    lift = 2.0 * points.half_impulse - values.inside
+    return toml.scene(
+        toml.head(values, WORDS, f"Detent escapement, {values.frequency / 7200.0:g} Hz, {values.teeth} teeth"),
+        toml.body(
+            *("wheel", "escape_wheel", "TEETH", "turns clockwise; the inertia includes the train as felt here"),
+            position=toml.ORIGIN,
+            angle=toml.Noted(
+                f"{round(points.wheel_angle() % points.pitch + CLEAR, 9)!r}°", "a tooth just off the locking face"
+            ),
+            inertia=f"{values.wheel_inertia:.15g} mg·cm²",
+        ),
+        toml.body(
+            *("detent", "detent", "STONE BAR HORN HUB"),
+            position=toml.at(*points.pivot),
+            angle=toml.Noted(f"{-CLEAR!r}°", "just off its bank", 11),
+            inertia=f"{values.detent_inertia:.15g} mg·cm²",
+        ),
+        toml.body(
+            *("passing", "passing_spring", "LEAF"),
+            "the passing spring: a light leaf, pressed on the detent's horn by its own spring",
+            rides="detent",
+            position=toml.at(*root(points)),
+            angle=f"{CLEAR!r}°",
+            mass=f"{3.0 * values.passing_inertia * 1e2 / (BLADE_LENGTH * points.scale) ** 2:.6g} mg",
+            inertia=f"{values.passing_inertia:.15g} mg·cm²",
+        ),
+        toml.body(
+            *("balance", "roller", "TABLE IMPULSE_STONE ROLLER DISCHARGE", "hangs at the end of a swing"),
+            position=toml.at(*points.balance_pivot),
+            angle=f"{-values.start!r}°",
+            inertia=f"{values.balance_inertia:.15g} mg·cm²",
+        ),
+        toml.banking("SCREW"),
+        toml.hairspring(values.frequency),
+        toml.table(
+            *("[[springs]]", "bent: holds the detent on its bank"),
+            body="detent",
+            stiffness=f"{values.detent_stiffness:.15g} µN·m/rad",
+            rest=f"{detent_rest:.9g}°",
+        ),
+        toml.table(
+            *("[[springs]]", "bent: holds the leaf on the horn"),
+            body="passing",
+            stiffness=f"{values.passing_stiffness:.15g} µN·m/rad",
+            rest=f"{passing_rest:.9g}°",
+        ),
+        toml.torque("wheel", f"{-values.torque!r} µN·m"),
+        toml.q_factor("balance", values.q_factor),
+        toml.contacts(
+            values,
+            "wheel.TEETH detent.STONE: locking",
+            "wheel.TEETH balance.IMPULSE_STONE: impulse",
+            "passing.LEAF balance.DISCHARGE: unlocking, and passing on the way back",
+            "passing.LEAF detent.HORN",
+            "detent.BAR banking.SCREW",
+        ),
+        toml.run("10 s"),
+        toml.timegrapher(toml.Noted(f"{lift:.4g}°", "from the letting go of the tooth to the end of the impulse", 11)),
     )
-
-
-# Which sheets does a detent escapement need?
 
 
 def sheets(values: Detent) -> dict[str, Sheet]:
@@ -386,8 +333,6 @@ def sheets(values: Detent) -> dict[str, Sheet]:
     }
     return {name: Sheet(tuple(loops)) for name, loops in parts.items()}
 
-
-# Which dimensions of a detent escapement do not go together?
 
 THIN = 1.3  # of the staff's radius: the least that holds the discharging stone
 FREE = 0.5  # degrees of the wheel by which a waiting tooth must stand outside the overlap
@@ -416,7 +361,5 @@ def conflicts(values: Detent) -> Iterator[Conflict]:
         return
     sheets(values)
 
-
-# What makes the detent escapement a design?
 
 DESIGN = Design("detent", "Detent escapement of a marine chronometer with its balance", Detent, sheets, scene_text, conflicts)

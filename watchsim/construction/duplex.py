@@ -1,4 +1,4 @@
-"""The duplex as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Duplex escapement of a watch with its balance: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -6,8 +6,9 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from watchsim.construction.design import Conflict, Design, Impossible, contact_tables, dim, told
-from watchsim.construction.outline import along, arc_between, circle, fillet_chain, polar, turned
+from watchsim.construction import scene_builder as toml
+from watchsim.construction.design import CHOSEN, ESTIMATE, Conflict, Design, Impossible, dim
+from watchsim.construction.outline import along, arc_between, circle, polar, rounded, turned
 from watchsim.construction.parts import Arms, BalanceWheel, Stone, ToothForm, balance_wheel, contour, tooth_and_gap
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
@@ -18,7 +19,7 @@ from watchsim.geometry.primitives import Arc, Edge, Line
 # Angles of notch, drop and letting go are the balance's, of the reach the wheel's.
 
 ABBOTT = "Abbott, The American Watchmaker and Jeweler (1893), Duplex Escapement"
-CHOSEN, ESTIMATE, USUAL = "chosen for this design", "estimate: not published", "usual in duplex watches"
+USUAL = "usual in duplex watches"
 
 
 @dataclass(frozen=True)
@@ -123,7 +124,7 @@ def wheel(points: DuplexPoints) -> list[Loop]:
     upright = impulse_tooth(points)
     return [
         contour(form, values.undercut, "RESTING", values.teeth),
-        *(Loop(tuple(arms.window(i)), "RESTING", hole=True) for i in range(ARMS)),
+        *arms.windows("RESTING"),
         circle("RESTING", (0.0, 0.0), BORE * s, hole=True),
         *(
             upright.moved(math.radians(points.waiting - points.rests + i * points.pitch), (0.0, 0.0))
@@ -151,9 +152,8 @@ def impulse_tooth(points: DuplexPoints) -> Loop:
     tip, height = (points.impulse_radius, 0.0), UPRIGHT * s
     front = along(tip, 180.0 - points.values.undercut, height / math.cos(math.radians(points.values.undercut)))
     back = along(polar(points.impulse_radius, 0.5), 180.0 - points.values.undercut - BACK, 1.15 * height)
-    corners = [front, tip, polar(points.impulse_radius, 0.5), back]
-    edges: list[Edge] = [Line(*corners[i], *corners[(i + 1) % 4]) for i in range(4)]
-    return Loop(tuple(fillet_chain(edges, [0.0, 0.0, 0.1 * height, 0.1 * height], closed=True)), "IMPULSE")
+    heel, foot = polar(points.impulse_radius, 0.5), 0.1 * height
+    return rounded("IMPULSE", [(front, foot), (tip, 0.0), (heel, 0.0), (back, foot)])
 
 
 def balance(points: DuplexPoints) -> list[Loop]:
@@ -187,8 +187,6 @@ def wheel_of(points: DuplexPoints) -> BalanceWheel:
     """Rim and hairspring of the balance."""
     return balance_wheel(points.values.balance_inertia, points.pallet, 0.45 * points.roller, BALANCE_ARMS)
 
-
-# Which dimensions of a duplex escapement do not go together?
 
 FREE = 0.2  # degrees of the wheel by which an impulse tooth stands outside the overlap until the notch has let go
 LEAST_FLOOR = 2.0  # degrees
@@ -233,82 +231,40 @@ def conflicts(values: Duplex) -> Iterator[Conflict]:
         yield Conflict("start", f"must be at most {round_again:.4g}°: farther out the notch comes round to the tooth again")
 
 
-# What does the scene of a duplex escapement say?
+OFF = 1e-4  # degrees by which the tooth stands off the roller at the start
 
-CLEAR_SCENE = 1e-4  # degrees by which the tooth stands off the roller at the start
-
-TEXT = """\
-# A duplex escapement: a long tooth rests on the roller while the balance swings; as the roller's notch comes by, counter-
-# clockwise, the tooth goes through with it, and an upright tooth falls on the impulse pallet. On the way back the tooth only
-# dips into the notch. Drawn to these dimensions:
-{dimensions}
-
-[scene]
-title  = "Duplex escapement, {values.frequency:.0f} vph, {values.teeth} teeth"
-schema = 1
-
-[bodies.wheel]                       # turns clockwise
-drawing  = "escape_wheel.dxf"
-layers   = ["RESTING", "IMPULSE"]
-pivot    = "PIVOT"
-position = ["0 mm", "0 mm"]
-angle    = "{wheel_angle!r}°"        # a tooth just off the roller
-inertia  = "{values.wheel_inertia:.15g} mg·cm²"      # with the train as felt here
-
-[bodies.balance]                     # hangs at the end of a swing
-drawing  = "balance.dxf"
-layers   = ["ROLLER", "PALLET"]
-draw     = ["RIM"]
-pivot    = "PIVOT"
-position = ["0 mm", "{distance!r} mm"]
-angle    = "{start!r}°"
-inertia  = "{values.balance_inertia:.15g} mg·cm²"
-
-[[springs]]
-body      = "balance"
-frequency = "{values.frequency:.15g} vph"
-draw      = {hairspring}
-
-[[torques]]
-body  = "wheel"
-value = "{torque!r} µN·m"
-
-[[damping]]
-body     = "balance"
-q_factor = {values.q_factor!r}
-
-{contacts}
-[run]
-duration  = "60 s"
-tolerance = 1e-12
-
-[timegrapher]
-lift_angle = "{lift:.4g}°"           # from the notch's taking of a tooth to the end of the impulse
-"""
-
-CONTACTS: tuple[tuple[str, str] | tuple[str, str, str], ...] = (
-    ("wheel.RESTING", "balance.ROLLER"),
-    ("wheel.IMPULSE", "balance.PALLET"),
-)
+WORDS = """\
+A duplex escapement: a long tooth rests on the roller while the balance swings; as the roller's notch comes by, counter-
+clockwise, the tooth goes through with it, and an upright tooth falls on the impulse pallet. On the way back the tooth only
+dips into the notch. Drawn to these dimensions:"""
 
 
 def scene_text(values: Duplex) -> str:
     """The text of scene.toml: a tooth at rest on the roller, the balance about to be let go."""
     points = DuplexPoints(values)
-    return TEXT.format(
-        dimensions=told(values),
-        values=values,
-        contacts=contact_tables(values, *CONTACTS),
-        wheel_angle=round((90.0 + points.rests + CLEAR_SCENE) % points.pitch, 9),
-        distance=points.distance,
-        start=-values.start,
-        hairspring=wheel_of(points).hairspring(90.0),
-        torque=-values.torque,
-        lift=points.driven + 2.0 * values.intersection,
+    lift = points.driven + 2.0 * values.intersection
+    return toml.scene(
+        toml.head(values, WORDS, f"Duplex escapement, {values.frequency:.0f} vph, {values.teeth} teeth"),
+        toml.body(
+            *("wheel", "escape_wheel", "RESTING IMPULSE", "turns clockwise"),
+            position=toml.ORIGIN,
+            angle=toml.Noted(f"{round((90.0 + points.rests + OFF) % points.pitch, 9)!r}°", "a tooth just off the roller"),
+            inertia=toml.Noted(f"{values.wheel_inertia:.15g} mg·cm²", "with the train as felt here", 6),
+        ),
+        toml.body(
+            *("balance", "balance", "ROLLER PALLET", "hangs at the end of a swing"),
+            draw="RIM",
+            position=toml.at(0, points.distance),
+            angle=f"{-values.start!r}°",
+            inertia=f"{values.balance_inertia:.15g} mg·cm²",
+        ),
+        toml.hairspring(values.frequency, wheel_of(points).hairspring(90.0)),
+        toml.torque("wheel", f"{-values.torque!r} µN·m"),
+        toml.q_factor("balance", values.q_factor),
+        toml.contacts(values, "wheel.RESTING balance.ROLLER", "wheel.IMPULSE balance.PALLET"),
+        toml.run("60 s", "1e-12"),
+        toml.timegrapher(toml.Noted(f"{lift:.4g}°", "from the notch's taking of a tooth to the end of the impulse", 11)),
     )
-
-
-# What makes the duplex escapement a design?
 
 
 def draw(values: Duplex) -> dict[str, Sheet]:

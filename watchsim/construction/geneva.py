@@ -1,4 +1,4 @@
-"""The geneva as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Geneva drive with a locking disc: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -6,15 +6,12 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from watchsim.construction.design import Conflict, Design, contact_tables, dim, told
-from watchsim.construction.outline import arc_between, circle, polar
+from watchsim.construction import scene_builder as toml
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim
+from watchsim.construction.outline import arc_between, around, circle, polar
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Edge, Line
-
-# Which numbers does the designer of a Geneva drive choose?
-
-CHOSEN = "chosen for this design"
 
 
 @dataclass(frozen=True)
@@ -80,8 +77,6 @@ def mouth_half(values: Geneva) -> float:
     return math.degrees(math.asin(slot_half(values) / wheel_radius(values)))
 
 
-# Which dimensions of a Geneva drive do not go together?
-
 LEAST_RIM = 0.02  # of the wheel's radius, that must stay between slot and hollow
 
 
@@ -132,68 +127,33 @@ def disc(values: Geneva) -> Loop:
     return Loop(tuple(edges), "DISC")
 
 
-# What does the scene of a Geneva drive say?
-
 TURNS = 2.25  # of the driver, which starts square to the line of centres: the pin then stands deepest in the third slot
-
-TEXT = """\
-# A Geneva drive, drawn to these dimensions:
-{dimensions}
-
-[scene]
-title  = "Geneva drive, {values.slots} slots"
-schema = 1
-
-[bodies.driver]                      # turns counter-clockwise, evenly
-drawing  = "driver.dxf"
-layers   = ["PIN", "DISC"]
-pivot    = "PIVOT"
-position = ["{distance!r} mm", "0 mm"]
-angle    = "90°"
-motion   = "driven"
-velocity = "{values.speed!r} °/s"
-
-[bodies.wheel]                       # locked at the start; turns clockwise, {pitch:.6g}° at a time
-drawing  = "wheel.dxf"
-layers   = ["WHEEL"]
-pivot    = "PIVOT"
-position = ["0 mm", "0 mm"]
-angle    = "{half!r}°"
-inertia  = "{values.wheel_inertia:.15g} g·mm²"
-{load}
-{contacts}
-[run]
-duration  = "{duration:.15g} s"
-tolerance = 1e-9
-"""
-
-LOAD = """
-[[damping]]                          # holds the wheel back against the driving side of a slot
-body    = "wheel"
-coulomb = "{load:.15g} mN·m"
-"""
-
-CONTACTS: tuple[tuple[str, str] | tuple[str, str, str], ...] = (
-    ("driver.PIN", "wheel.WHEEL"),
-    ("driver.DISC", "wheel.WHEEL", "the lock"),
-)
 
 
 def scene_text(values: Geneva) -> str:
     """The text of scene.toml: the wheel locked, the pin outside."""
-    return TEXT.format(
-        dimensions=told(values),
-        values=values,
-        contacts=contact_tables(values, *CONTACTS),
-        distance=centre_distance(values),
-        half=half_pitch(values),
-        pitch=2.0 * half_pitch(values),
-        load=LOAD.format(load=values.load) if values.load > 0.0 else "",
-        duration=TURNS * 360.0 / values.speed,
+    holds = "holds the wheel back against the driving side of a slot"
+    return toml.scene(
+        toml.head(values, "A Geneva drive, drawn to these dimensions:", f"Geneva drive, {values.slots} slots"),
+        toml.body(
+            *("driver", "driver", "PIN DISC", "turns counter-clockwise, evenly"),
+            position=toml.at(centre_distance(values), 0),
+            angle="90°",
+            motion="driven",
+            velocity=f"{values.speed!r} °/s",
+        ),
+        toml.body(
+            *("wheel", "wheel", "WHEEL"),
+            f"locked at the start; turns clockwise, {2.0 * half_pitch(values):.6g}° at a time",
+            position=toml.ORIGIN,
+            angle=f"{half_pitch(values)!r}°",
+            inertia=f"{values.wheel_inertia:.15g} g·mm²",
+        ),
+        toml.table("[[damping]]", holds, body="wheel", coulomb=f"{values.load:.15g} mN·m") if values.load > 0.0 else None,
+        toml.contacts(values, "driver.PIN wheel.WHEEL", "driver.DISC wheel.WHEEL: the lock"),
+        toml.run(f"{TURNS * 360.0 / values.speed:.15g} s"),
     )
 
-
-# What is the outline of the driven wheel?
 
 BORE_WHEEL = 0.2  # by the distance of the slots' bottoms from the axis
 
@@ -201,10 +161,9 @@ BORE_WHEEL = 0.2  # by the distance of the slots' bottoms from the axis
 def wheel(values: Geneva) -> list[Loop]:
     """The slotted wheel and its bore."""
     pitch = math.radians(2.0 * half_pitch(values))
-    part = Loop(tuple(sector(values)), "WHEEL")
-    edges = [edge for i in range(values.slots) for edge in part.moved(i * pitch, (0.0, 0.0)).edges]
+    outline = around("WHEEL", sector(values), (i * pitch for i in range(values.slots)))
     bore = BORE_WHEEL * (slot_bottom(values) - slot_half(values))
-    return [Loop(tuple(edges), "WHEEL"), circle("WHEEL", (0.0, 0.0), bore, hole=True)]
+    return [outline, circle("WHEEL", (0.0, 0.0), bore, hole=True)]
 
 
 def sector(values: Geneva) -> list[Edge]:
@@ -221,9 +180,6 @@ def sector(values: Geneva) -> list[Edge]:
         arc_between(first, last, polar(centre_distance(values), middle), False),
         arc_between(last, polar(rim, 2.0 * middle - mouth), (0.0, 0.0), True),
     ]
-
-
-# What makes the Geneva drive a design?
 
 
 def draw(values: Geneva) -> dict[str, Sheet]:

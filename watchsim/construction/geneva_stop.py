@@ -1,4 +1,4 @@
-"""The geneva stop as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Geneva stop-work on the barrel of a watch, wound by hand: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from watchsim.construction import geneva as of_drive
-from watchsim.construction.design import Conflict, Design, contact_tables, dim, told
+from watchsim.construction import scene_builder as toml
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim
 from watchsim.construction.geneva import (
     BORE_WHEEL,
     Geneva,
@@ -24,9 +25,7 @@ from watchsim.construction.outline import arc_between, circle, polar
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
 
-# Which numbers does the designer of a Geneva stop-work choose?
-
-CHOSEN, USUAL = "chosen for this design", "usual in watches"
+USUAL = "usual in watches"
 
 
 @dataclass(frozen=True)
@@ -63,8 +62,6 @@ class GenevaStop:
         )
 
 
-# Which dimensions of a Geneva stop-work do not go together?
-
 SPARE = 1.1
 
 
@@ -98,88 +95,50 @@ def cross(drive: Geneva) -> list[Loop]:
     return [Loop(tuple(edges), "CROSS"), circle("CROSS", (0.0, 0.0), bore, hole=True)]
 
 
-# What does the scene of a Geneva stop-work say?
-
-SPARE_SCENE = 1.4  # times the time that the turns would take at the speed without impacts
+LONGER = 1.4  # times the time that the turns would take at the speed without impacts
 OUTSIDE = 90.0  # degrees of the arbor from where its pin is deepest, at the start
 
-TEXT = """\
-# A Geneva stop-work: each turn of the barrel arbor takes the Maltese cross on by an arm; the arm without a hollow stops the
-# arbor. Drawn to these dimensions:
-{dimensions}
-
-[scene]
-title  = "Geneva stop-work, {values.turns} turns"
-schema = 1
-
-[bodies.arbor]                       # wound counter-clockwise by hand
-drawing  = "arbor.dxf"
-layers   = ["PIN", "DISC"]
-pivot    = "PIVOT"
-position = ["{distance!r} mm", "0 mm"]
-angle    = "{start!r}°"
-inertia  = "{values.arbor_inertia:.15g} g·mm²"
-
-[bodies.cross]                       # turns clockwise, {pitch:.6g}° at a time
-drawing  = "cross.dxf"
-layers   = ["CROSS"]
-pivot    = "PIVOT"
-position = ["0 mm", "0 mm"]
-angle    = "{half!r}°"
-inertia  = "{values.cross_inertia:.15g} g·mm²"
-
-[[torques]]                          # the hand
-body  = "arbor"
-value = "{values.hand:.15g} mN·m"
-
-[[springs]]                          # the mainspring, slack at the start, pulls back
-body      = "arbor"
-stiffness = "{stiffness!r} mN·m/rad"
-rest      = "{start!r}°"
-
-[[damping]]                          # the hand does not turn faster
-body    = "arbor"
-viscous = "{viscous!r} mN·m·s/rad"
-{load}
-{contacts}
-[run]
-duration  = "{duration:.6g} s"
-tolerance = 1e-9
-"""
-
-LOAD = """
-[[damping]]
-body    = "cross"
-coulomb = "{load:.15g} mN·m"
-"""
-
-CONTACTS: tuple[tuple[str, str] | tuple[str, str, str], ...] = (
-    ("arbor.PIN", "cross.CROSS"),
-    ("arbor.DISC", "cross.CROSS", "the lock, and the stop"),
-)
+WORDS = """\
+A Geneva stop-work: each turn of the barrel arbor takes the Maltese cross on by an arm; the arm without a hollow stops the
+arbor. Drawn to these dimensions:"""
 
 
 def scene_text(values: GenevaStop) -> str:
     """The text of scene.toml: let down, the arbor a quarter of a turn past the lower stop."""
-    drive, wound = values.drive, math.tau * values.turns
+    drive, wound, start = values.drive, math.tau * values.turns, f"{180.0 - 360.0 + OUTSIDE!r}°"
     fastest = math.radians(values.speed)
     slowest = fastest * (1.0 - values.mainspring / values.hand)
-    return TEXT.format(
-        dimensions=told(values),
-        values=values,
-        contacts=contact_tables(values, *CONTACTS),
-        distance=centre_distance(drive),
-        start=180.0 - 360.0 + OUTSIDE,
-        half=half_pitch(drive),
-        pitch=2.0 * half_pitch(drive),
-        stiffness=values.mainspring / wound,
-        viscous=values.hand / math.radians(values.speed),
-        load=LOAD.format(load=values.load) if values.load > 0.0 else "",
-        duration=SPARE_SCENE * wound * math.log(fastest / slowest) / (fastest - slowest),
+    duration = LONGER * wound * math.log(fastest / slowest) / (fastest - slowest)
+    return toml.scene(
+        toml.head(values, WORDS, f"Geneva stop-work, {values.turns} turns"),
+        toml.body(
+            *("arbor", "arbor", "PIN DISC", "wound counter-clockwise by hand"),
+            position=toml.at(centre_distance(drive), 0),
+            angle=start,
+            inertia=f"{values.arbor_inertia:.15g} g·mm²",
+        ),
+        toml.body(
+            *("cross", "cross", "CROSS", f"turns clockwise, {2.0 * half_pitch(drive):.6g}° at a time"),
+            position=toml.ORIGIN,
+            angle=f"{half_pitch(drive)!r}°",
+            inertia=f"{values.cross_inertia:.15g} g·mm²",
+        ),
+        toml.torque("arbor", f"{values.hand:.15g} mN·m", "the hand"),
+        toml.table(
+            *("[[springs]]", "the mainspring, slack at the start, pulls back"),
+            body="arbor",
+            stiffness=f"{values.mainspring / wound!r} mN·m/rad",
+            rest=start,
+        ),
+        toml.table(
+            *("[[damping]]", "the hand does not turn faster"),
+            body="arbor",
+            viscous=f"{values.hand / math.radians(values.speed)!r} mN·m·s/rad",
+        ),
+        toml.table("[[damping]]", body="cross", coulomb=f"{values.load:.15g} mN·m") if values.load > 0.0 else None,
+        toml.contacts(values, "arbor.PIN cross.CROSS", "arbor.DISC cross.CROSS: the lock, and the stop"),
+        toml.run(f"{duration:.6g} s"),
     )
-
-
-# What makes the Geneva stop-work a design?
 
 
 def draw(values: GenevaStop) -> dict[str, Sheet]:

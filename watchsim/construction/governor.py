@@ -1,4 +1,4 @@
-"""The governor as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Governor fly of a striking train: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -6,14 +6,10 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from watchsim.construction.design import Conflict, Design, dim, told
-from watchsim.construction.outline import circle, rounded
+from watchsim.construction import scene_builder as toml
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim
+from watchsim.construction.outline import circle, polygon
 from watchsim.drawing.write import Sheet
-from watchsim.geometry.loops import Loop
-
-# Which numbers does the designer of a governor fly choose?
-
-CHOSEN = "chosen for this design"
 
 
 @dataclass(frozen=True)
@@ -35,47 +31,9 @@ class Governor:
     air: float = dim(1.2, "kg/m³", 0.1, 5.0, "density", "at 20 °C and sea level")
 
 
-# What does the scene of a governor fly say?
-
-TEXT = """\
-# The governor of a striking train: a weight on a drum drives a fly through gears, and the air on its vanes takes what that
-# gives. From rest it comes up to the speed at which both are equal, {terminal:.4g} rad/s of the fly. Drawn to these dimensions:
-{dimensions}
-
-[scene]
-title  = "Governor fly of a striking train"
-schema = 1
-
-[bodies.drum]
-drawing  = "drum.dxf"
-layers   = ["DRUM"]
-pivot    = ["0 mm", "0 mm"]
-position = ["0 mm", "0 mm"]
-inertia  = "{values.drum_inertia:.15g} kg·cm²"
-
-[bodies.fly]
-drawing  = "fly.dxf"
-layers   = ["VANES"]
-draw     = ["COLLAR"]
-pivot    = ["0 mm", "0 mm"]
-position = ["{apart:.15g} mm", "0 mm"]
-inertia  = "{values.fly_inertia:.15g} g·cm²"
-
-[[gears]]                            # through the arbors between them
-between = ["drum", "fly"]
-ratio   = {values.ratio!r}
-
-[[torques]]
-body  = "drum"
-value = "{values.torque:.15g} mN·m"
-
-[[damping]]                          # vanes in air: torque c w²
-body      = "fly"
-quadratic = "{drag:.15g} nN·m·s²/rad²"
-
-[run]
-duration = "{duration:.2g} s"
-"""
+WORDS = """\
+The governor of a striking train: a weight on a drum drives a fly through gears, and the air on its vanes takes what that
+gives. From rest it comes up to the speed at which both are equal, {terminal} rad/s of the fly. Drawn to these dimensions:"""
 
 SETTLED = 6.0  # times the time constant of tanh: within 10⁻⁵ of the terminal speed
 
@@ -99,27 +57,34 @@ def time_constant(values: Governor) -> float:
 
 def scene_text(values: Governor) -> str:
     """The text of scene.toml: all at rest."""
-    return TEXT.format(
-        dimensions=told(values),
-        values=values,
-        apart=1.1 * (values.drum_radius + values.reach),
-        drag=1e9 * drag(values),
-        terminal=terminal_speed(values),
-        duration=SETTLED * time_constant(values),
+    apart, air = 1.1 * (values.drum_radius + values.reach), f"{1e9 * drag(values):.15g} nN·m·s²/rad²"
+    return toml.scene(
+        toml.head(values, WORDS.format(terminal=f"{terminal_speed(values):.4g}"), "Governor fly of a striking train"),
+        toml.body(
+            "drum", "drum", "DRUM", pivot=toml.ORIGIN, position=toml.ORIGIN, inertia=f"{values.drum_inertia:.15g} kg·cm²"
+        ),
+        toml.body(
+            *("fly", "fly", "VANES"),
+            draw="COLLAR",
+            pivot=toml.ORIGIN,
+            position=(f"{apart:.15g} mm", "0 mm"),
+            inertia=f"{values.fly_inertia:.15g} g·cm²",
+        ),
+        toml.table("[[gears]]", "through the arbors between them", between=("drum", "fly"), ratio=values.ratio),
+        toml.torque("drum", f"{values.torque:.15g} mN·m"),
+        toml.table("[[damping]]", "vanes in air: torque c w²", body="fly", quadratic=air),
+        toml.table("[run]", duration=f"{SETTLED * time_constant(values):.2g} s"),
     )
-
-
-# What makes the governor fly of a striking train a design?
 
 
 def draw(values: Governor) -> dict[str, Sheet]:
     """Drum and fly: two vanes on a collar, seen along the axis."""
     far, half = values.reach, 0.5 * values.thickness
-    vanes = rounded([(-far, -half, 0.0), (far, -half, 0.0), (far, half, 0.0), (-far, half, 0.0)])
+    vanes = polygon("VANES", [(-far, -half), (far, -half), (far, half), (-far, half)])
     collar = max(0.1 * values.reach, values.thickness)
     return {
         "drum": Sheet((circle("DRUM", (0.0, 0.0), values.drum_radius),)),
-        "fly": Sheet((Loop(tuple(vanes), "VANES"), circle("COLLAR", (0.0, 0.0), collar))),
+        "fly": Sheet((vanes, circle("COLLAR", (0.0, 0.0), collar))),
     }
 
 

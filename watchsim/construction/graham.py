@@ -1,4 +1,4 @@
-"""The graham as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Graham's dead-beat escapement with its pendulum: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -6,8 +6,10 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from watchsim.construction.design import Conflict, Design, Impossible, contact_tables, dim, told
-from watchsim.construction.outline import along, angle_of, arc_between, circle, polar, turned
+from watchsim.construction import scene_builder as toml
+from watchsim.construction.design import CHOSEN, Conflict, Design, Impossible, dim
+from watchsim.construction.outline import along, angle_of, arc_between, around, circle, polar, polygon, turned
+from watchsim.construction.parts import bob_and_rod
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Edge, Line, Point
@@ -16,7 +18,7 @@ from watchsim.geometry.primitives import Edge, Line, Point
 #
 # Angles of lock and lift are at the pendulum's pivot, of drop and tooth at the wheel's.
 
-CHOSEN, USUAL = "chosen for this design", "usual in pendulum clocks"
+USUAL = "usual in pendulum clocks"
 
 
 @dataclass(frozen=True)
@@ -141,15 +143,14 @@ def pendulum(anchor: Anchor) -> list[Loop]:
     """Pallets, anchor, rod and bob."""
     values = anchor.values
     size, half = values.tip_radius, ROD * values.tip_radius
-    down = [(half, 0.0), (half, -values.pendulum), (-half, -values.pendulum), (-half, 0.0)]
-    rod = tuple(Line(*down[i], *down[i - 1]) for i in range(4))
+    low = -values.pendulum
     return [
         pallet(anchor, 1),
         pallet(anchor, -1),
         arms(anchor),
         circle("ANCHOR", (0.0, 0.0), BORE * size, hole=True),
-        Loop(tuple(edge for edge in reversed(rod)), "ROD"),
-        circle("BOB", (0.0, -values.pendulum), values.bob_radius),
+        polygon("ROD", [(-half, 0.0), (-half, low), (half, low), (half, 0.0)]),
+        circle("BOB", (0.0, low), values.bob_radius),
     ]
 
 
@@ -198,87 +199,35 @@ def arms(anchor: Anchor) -> Loop:
     return Loop(tuple(edges), "ANCHOR")
 
 
-# What does the scene of an anchor escapement with a pendulum say?
-
 CLEAR = 1e-5  # degrees by which the tooth stands off the pallet at the start
-BOB_DENSITY = 8400.0  # kg/m³, brass
-ROD_DENSITY, ROD_THICKNESS = 7850.0, 2.0  # steel; mm
-
-TEXT = """\
-# {title}, drawn to these dimensions:
-{dimensions}
-
-[scene]
-title   = "{title}"
-schema  = 1
-gravity = ["0 m/s²", "{gravity!r} m/s²"]
-
-[bodies.wheel]                       # turns clockwise
-drawing  = "escape_wheel.dxf"
-layers   = ["TEETH"]
-pivot    = "PIVOT"
-position = ["0 mm", "0 mm"]
-angle    = "{wheel_angle!r}°"        # a tooth just off the locking face of the entry pallet
-inertia  = "{values.wheel_inertia:.15g} g·mm²"
-
-[bodies.pendulum]                    # with the anchor; let go with the entry pallet deep in the wheel
-drawing  = "pendulum.dxf"
-layers   = ["PALLETS"]
-pivot    = "PIVOT"
-position = ["0 mm", "{distance!r} mm"]
-angle    = "{values.start!r}°"
-
-[[bodies.pendulum.solids]]
-layer     = "BOB"
-thickness = "{thickness!r} mm"       # makes its mass {values.bob_mass:.6g} kg
-density   = "{bob_density:g} kg/m³"
-
-[[bodies.pendulum.solids]]
-layer     = "ROD"
-thickness = "{rod_thickness:g} mm"
-density   = "{rod_density:g} kg/m³"
-
-[[torques]]
-body  = "wheel"
-value = "{torque:.15g} mN·m"
-
-[[damping]]
-body     = "pendulum"
-q_factor = {values.q_factor!r}
-
-{contacts}
-[run]
-duration  = "60 s"
-tolerance = 1e-12
-
-[timegrapher]
-lift_angle = "{values.lift!r}°"
-"""
-
-CONTACTS: tuple[tuple[str, str] | tuple[str, str, str], ...] = (("wheel.TEETH", "pendulum.PALLETS"),)
+BRASS = 8400.0  # kg/m³
 
 
-def scene_text(anchor: Anchor, title: str) -> str:
+def scene_text(anchor: Anchor, name: str) -> str:
     """The text of scene.toml: a tooth locked on the entry pallet, the pendulum about to be let go."""
-    values = anchor.values
-    area = math.pi * values.bob_radius**2
-    return TEXT.format(
-        title=f"{title}, {values.teeth} teeth",
-        dimensions=told(values),
-        values=values,
-        contacts=contact_tables(values, *CONTACTS),
-        gravity=-values.gravity,
-        wheel_angle=(anchor.wheel_angle(values.start) + CLEAR) % (360.0 / values.teeth),
-        distance=anchor.distance,
-        thickness=values.bob_mass / (BOB_DENSITY * area) * 1e9,
-        bob_density=BOB_DENSITY,
-        rod_thickness=ROD_THICKNESS,
-        rod_density=ROD_DENSITY,
-        torque=-values.torque,
+    values, title = anchor.values, f"{name}, {anchor.values.teeth} teeth"
+    wheel_angle = (anchor.wheel_angle(values.start) + CLEAR) % (360.0 / values.teeth)
+    return toml.scene(
+        toml.head(values, f"{title}, drawn to these dimensions:", title, gravity=values.gravity),
+        toml.body(
+            *("wheel", "escape_wheel", "TEETH", "turns clockwise"),
+            position=toml.ORIGIN,
+            angle=toml.Noted(f"{wheel_angle!r}°", "a tooth just off the locking face of the entry pallet"),
+            inertia=f"{values.wheel_inertia:.15g} g·mm²",
+        ),
+        toml.body(
+            *("pendulum", "pendulum", "PALLETS", "with the anchor; let go with the entry pallet deep in the wheel"),
+            position=toml.at(0, anchor.distance),
+            angle=f"{values.start!r}°",
+        ),
+        *bob_and_rod(values, BRASS, 2.0),
+        toml.torque("wheel", f"{-values.torque:.15g} mN·m"),
+        toml.q_factor("pendulum", values.q_factor),
+        toml.contacts(values, "wheel.TEETH pendulum.PALLETS"),
+        toml.run("60 s", "1e-12"),
+        toml.timegrapher(f"{values.lift!r}°"),
     )
 
-
-# What is the outline of an escape wheel with pointed teeth?
 
 DEPTH, RIM, HUB_WHEEL, BORE_WHEEL = 0.2, 0.1, 0.2, 0.06  # by the radius of the wheel
 ARMS, ARM = 4, 0.05
@@ -288,11 +237,10 @@ def wheel(values: Graham) -> list[Loop]:
     """Teeth, windows and bore."""
     size = values.tip_radius
     pitch = 2.0 * math.pi / values.teeth
-    tooth = Loop(tuple(_tooth(values)), "TEETH")
-    edges = [edge for i in range(values.teeth) for edge in tooth.moved(i * pitch, (0.0, 0.0)).edges]
+    teeth = around("TEETH", _tooth(values), (i * pitch for i in range(values.teeth)))
     inner, outer = HUB_WHEEL * size, (1.0 - DEPTH - RIM) * size
     windows = [_window(90.0 * i, inner, outer, ARM * size) for i in range(ARMS)]
-    return [Loop(tuple(edges), "TEETH"), *windows, circle("TEETH", (0.0, 0.0), BORE_WHEEL * size, hole=True)]
+    return [teeth, *windows, circle("TEETH", (0.0, 0.0), BORE_WHEEL * size, hole=True)]
 
 
 def feet(values: Graham) -> tuple[Point, Point]:
@@ -305,7 +253,7 @@ def feet(values: Graham) -> tuple[Point, Point]:
 def _down(corner: Point, way: float, size: float) -> Point:
     """Along `way` from a corner to the floor."""
     floor, x, y = (1.0 - DEPTH) * size, *corner
-    dx, dy = math.cos(math.radians(way)), math.sin(math.radians(way))
+    dx, dy = polar(1.0, way)
     ahead = -(x * dx + y * dy)
     return along(corner, way, ahead - math.sqrt(ahead * ahead - (x * x + y * y - floor * floor)))
 
@@ -344,8 +292,6 @@ def _window(start: float, inner: float, outer: float, half: float) -> Loop:
     return Loop(tuple(edges), "TEETH", hole=True)
 
 
-# Which dimensions of a dead-beat or recoil escapement do not go together?
-
 LEAST_WIDTH, LEAST_GAP, MOST_SPAN = 0.2, 0.3, 80.0
 
 
@@ -370,9 +316,6 @@ def conflicts(anchor: Anchor) -> Iterator[Conflict]:
         yield Conflict("back", f"must be more than the undercut of {values.undercut:g}°, else a tooth is thinner at its foot")
     elif gap(values) < LEAST_GAP:
         yield Conflict("back", f"leaves {gap(values):.3g}° between two teeth; {LEAST_GAP:g}° are needed")
-
-
-# What makes the dead-beat escapement a design?
 
 
 def sheets(anchor: Anchor) -> dict[str, Sheet]:

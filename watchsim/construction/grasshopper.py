@@ -1,4 +1,4 @@
-"""The grasshopper as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Grasshopper escapement with its pendulum: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -6,16 +6,13 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from watchsim.construction.design import Conflict, Design, contact_tables, dim, told
-from watchsim.construction.outline import angle_of, circle, polar, rounded, turned
+from watchsim.construction import scene_builder as toml
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim
+from watchsim.construction.outline import angle_of, circle, polar, polygon, turned
 from watchsim.construction.parts import Arms
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Point
-
-# Which numbers does the designer of a grasshopper escapement choose?
-
-CHOSEN = "chosen for this design"
 
 
 @dataclass(frozen=True)
@@ -161,8 +158,8 @@ def wheel(at: Points) -> list[Loop]:
         corners += [polar(r, first), polar(r, first + LAND * at.pitch), polar(low, first + BACK * at.pitch)]
         corners += [polar(low, first + (1.0 + FRONT) * at.pitch)]
     arms = Arms(ARMS, 0.07 * r, HUB * r, RIM * low, 0.03 * r)
-    windows = [Loop(tuple(arms.window(i)), "TEETH", hole=True) for i in range(ARMS)]
-    return [_polygon(corners, "TEETH"), *windows, circle("TEETH", (0.0, 0.0), 0.05 * r, hole=True)]
+    windows = arms.windows("TEETH")
+    return [polygon("TEETH", corners), *windows, circle("TEETH", (0.0, 0.0), 0.05 * r, hole=True)]
 
 
 def pallet(at: Points, side: int) -> list[Loop]:
@@ -176,7 +173,7 @@ def pallet(at: Points, side: int) -> list[Loop]:
         nib = [(end, -deep), (end + NIB * unit, -deep), (out, NEAR * unit), (out, FAR * unit)]
         corners = [*nib, (0.0, FAR * unit), (0.0, NEAR * unit), (end, NEAR * unit)]
     hub = circle("HUB", (0.0, 0.0), 2.0 * PIN * unit)
-    return [_polygon(corners if side == EXIT else corners[::-1], "PALLET"), hub]
+    return [polygon("PALLET", corners if side == EXIT else corners[::-1]), hub]
 
 
 def pendulum(at: Points) -> list[Loop]:
@@ -215,123 +212,64 @@ def _bar(start: tuple[float, float], end: tuple[float, float], half: float, laye
     long = math.dist(start, end)
     nx, ny = half * (start[1] - end[1]) / long, half * (end[0] - start[0]) / long
     (x0, y0), (x1, y1) = start, end
-    return _polygon([(x0 - nx, y0 - ny), (x1 - nx, y1 - ny), (x1 + nx, y1 + ny), (x0 + nx, y0 + ny)], layer)
+    return polygon(layer, [(x0 - nx, y0 - ny), (x1 - nx, y1 - ny), (x1 + nx, y1 + ny), (x0 + nx, y0 + ny)])
 
 
-def _polygon(corners: list[tuple[float, float]], layer: str) -> Loop:
-    return Loop(tuple(rounded([(*corner, 0.0) for corner in corners])), layer)
+OFF_PALLET, OFF_STOPS = 1e-3, 1e-4  # degrees, at the start: the tooth off its pallet, the pallets off their stops
 
 
-# What does the scene of a grasshopper escapement say?
-
-CLEAR_SCENE, OFF = (
-    1e-3,
-    1e-4,
-)  # degrees by which, at the start, the tooth stands off its pallet, and the pallets off their stops
-
-TEXT = """\
-# A grasshopper escapement with one pivot for both pallets, drawn to these dimensions:
-{dimensions}
-# From them: frame {arm:.6g} mm from the pendulum's axis to the pallets' pivot, pallets {length:.6g} mm long.
-
-[scene]
-title   = "Grasshopper escapement, {values.teeth} teeth"
-schema  = 1
-gravity = ["0 m/s²", "{gravity!r} m/s²"]
-
-[bodies.wheel]                       # turns clockwise
-drawing  = "wheel.dxf"
-layers   = ["TEETH"]
-pivot    = ["0 mm", "0 mm"]
-position = ["0 mm", "0 mm"]
-angle    = "{wheel!r}°"              # a tooth just off the entry pallet
-inertia  = "{values.wheel_inertia:.15g} g·mm²"
-
-[bodies.pendulum]                    # with the frame; let go with the entry pallet about to drive it
-drawing  = "pendulum.dxf"
-layers   = ["STOPS"]
-pivot    = ["0 mm", "0 mm"]
-position = ["{axis[0]!r} mm", "{axis[1]!r} mm"]
-angle    = "{start!r}°"
-mass     = "{values.bob_mass:.15g} kg"
-centre_of_mass = ["0 mm", "{bob!r} mm"]
-inertia  = "{inertia:.15g} kg·mm²"   # of the bob, about the pivot
-
-[bodies.entry]                       # hangs in the frame; pushed by its tooth
-on       = "pendulum"
-drawing  = "entry.dxf"
-layers   = ["PALLET"]
-pivot    = ["0 mm", "0 mm"]
-position = ["{pivot!r} mm", "0 mm"]
-angle    = "{entry!r}°"
-mass     = "{values.pallet_mass:.15g} g"
-inertia  = "{values.pallet_inertia:.15g} g·mm²"
-
-[bodies.exit]                        # on the same pivot; pulled by its tooth
-on       = "pendulum"
-drawing  = "exit.dxf"
-layers   = ["PALLET"]
-pivot    = ["0 mm", "0 mm"]
-position = ["{pivot!r} mm", "0 mm"]
-angle    = "{exit!r}°"
-mass     = "{values.pallet_mass:.15g} g"
-inertia  = "{values.pallet_inertia:.15g} g·mm²"
-
-[[torques]]                          # counterweights, which lift the pallets to their stops
-body  = "entry"
-value = "{lift_entry:.15g} µN·m"
-
-[[torques]]
-body  = "exit"
-value = "{values.pallet_torque:.15g} µN·m"
-
-[[torques]]
-body  = "wheel"
-value = "{torque:.15g} mN·m"
-
-[[damping]]
-body     = "pendulum"
-q_factor = {values.q_factor!r}
-
-{contacts}
-[run]
-duration  = "60 s"
-tolerance = 1e-12
-"""
-
-CONTACTS = (
-    ("wheel.TEETH", "entry.PALLET"),
-    ("wheel.TEETH", "exit.PALLET"),
-    ("entry.PALLET", "pendulum.STOPS"),
-    ("exit.PALLET", "pendulum.STOPS"),
-)
-
-
-def scene_text(at: Points) -> str:
+def scene_text(made: Points) -> str:
     """The text of scene.toml: a tooth on the entry pallet, the exit pallet on its stop."""
-    values = at.values
+    values = made.values
     about = values.bob_mass * (values.pendulum**2 + 0.5 * values.bob_radius**2)
-    return TEXT.format(
-        dimensions=told(values),
-        values=values,
-        contacts=contact_tables(values, *CONTACTS),
-        arm=at.arm,
-        length=at.length,
-        gravity=-values.gravity,
-        wheel=math.fmod(at.tooth(at.furthest, ENTRY), at.pitch) + CLEAR_SCENE,
-        axis=at.axis,
-        start=at.furthest,
-        bob=-values.pendulum,
-        inertia=about,
-        pivot=-at.arm,
-        entry=at.stopped(ENTRY) + OFF,
-        exit=at.stopped(EXIT) - OFF,
-        lift_entry=-values.pallet_torque,
-        torque=-values.torque,
+    follows = (
+        f"From them: frame {made.arm:.6g} mm from the pendulum's axis to the pallets' pivot, pallets {made.length:.6g} mm long."
+    )
+    words = "A grasshopper escapement with one pivot for both pallets, drawn to these dimensions:"
+    wheel_angle = math.fmod(made.tooth(made.furthest, ENTRY), made.pitch) + OFF_PALLET
+
+    def hanging(name: str, remark: str, angle: float) -> str:
+        return toml.body(
+            *(name, name, "PALLET", remark),
+            rides="pendulum",
+            pivot=toml.ORIGIN,
+            position=toml.at(-made.arm, 0),
+            angle=f"{angle!r}°",
+            mass=f"{values.pallet_mass:.15g} g",
+            inertia=f"{values.pallet_inertia:.15g} g·mm²",
+        )
+
+    return toml.scene(
+        toml.head(values, words, f"Grasshopper escapement, {values.teeth} teeth", follows, values.gravity),
+        toml.body(
+            *("wheel", "wheel", "TEETH", "turns clockwise"),
+            pivot=toml.ORIGIN,
+            position=toml.ORIGIN,
+            angle=toml.Noted(f"{wheel_angle!r}°", "a tooth just off the entry pallet", 14),
+            inertia=f"{values.wheel_inertia:.15g} g·mm²",
+        ),
+        toml.body(
+            *("pendulum", "pendulum", "STOPS", "with the frame; let go with the entry pallet about to drive it"),
+            pivot=toml.ORIGIN,
+            position=toml.at(*made.axis),
+            angle=f"{made.furthest!r}°",
+            mass=f"{values.bob_mass:.15g} kg",
+            centre_of_mass=toml.at(0, -values.pendulum),
+            inertia=toml.Noted(f"{about:.15g} kg·mm²", "of the bob, about the pivot", 3),
+        ),
+        hanging("entry", "hangs in the frame; pushed by its tooth", made.stopped(ENTRY) + OFF_STOPS),
+        hanging("exit", "on the same pivot; pulled by its tooth", made.stopped(EXIT) - OFF_STOPS),
+        toml.torque("entry", f"{-values.pallet_torque:.15g} µN·m", "counterweights, which lift the pallets to their stops"),
+        toml.torque("exit", f"{values.pallet_torque:.15g} µN·m"),
+        toml.torque("wheel", f"{-values.torque:.15g} mN·m"),
+        toml.q_factor("pendulum", values.q_factor),
+        toml.contacts(
+            *(values, "wheel.TEETH entry.PALLET", "wheel.TEETH exit.PALLET"),
+            *("entry.PALLET pendulum.STOPS", "exit.PALLET pendulum.STOPS"),
+        ),
+        toml.run("60 s", "1e-12"),
     )
 
-
-# What makes the grasshopper escapement a design?
 
 NARROWEST, WIDEST = 50.0, 130.0  # degrees between the pallets, seen from the wheel
 HIGHEST = 0.8  # of a pitch: height of a tooth

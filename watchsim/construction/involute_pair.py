@@ -1,4 +1,4 @@
-"""The involute pair as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Pair of involute gears: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -6,16 +6,12 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from watchsim.construction.design import Conflict, Design, dim
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim
 from watchsim.construction.outline import arc_between, polar
 from watchsim.construction.parts import arc_through, gear_outline, gear_pair_scene, other_flank
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Edge, Line, Point
-
-# Which numbers does the designer of a pair of involute gears choose?
-
-CHOSEN = "chosen for this design"
 
 
 @dataclass(frozen=True)
@@ -192,8 +188,6 @@ def contact_ratio(values: InvolutePair) -> float:
     return used * pinion.teeth / (2.0 * math.pi * pinion.base_radius)
 
 
-# Which dimensions of a pair of involute gears do not go together?
-
 LEAST_TIP, LEAST_FLOOR = 0.1, 0.05  # modules; degrees
 
 
@@ -222,9 +216,6 @@ def conflicts(values: InvolutePair) -> Iterator[Conflict]:
         yield Conflict(
             "spread", f"gives a contact ratio of {contact_ratio(values):.3g}: a tooth leaves before the next one meets"
         )
-
-
-# What makes a pair of involute gears a design?
 
 
 def draw(values: InvolutePair) -> dict[str, Sheet]:

@@ -1,4 +1,4 @@
-"""The jumper as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Calendar star with jumper and finger: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -6,14 +6,12 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from watchsim.construction.design import Conflict, Design, contact_tables, dim, told
-from watchsim.construction.outline import circle, polar, rounded
+from watchsim.construction import scene_builder as toml
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim
+from watchsim.construction.outline import circle, polar, polygon, rounded
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
-
-# Which numbers does the designer of a calendar star and its jumper choose?
-
-CHOSEN = "chosen for this design"
+from watchsim.geometry.primitives import Point
 
 
 @dataclass(frozen=True)
@@ -85,8 +83,6 @@ def finger_direction(values: Jumper) -> float:
     return tooth + half_push(values) - wait
 
 
-# Which dimensions of a star and its jumper do not go together?
-
 LEAST_ROOT = 0.2  # of the tip radius
 NARROWEST = 15.0  # degrees between a flank and the radius: the beak would jam
 
@@ -113,8 +109,6 @@ def conflicts(values: Jumper) -> Iterator[Conflict]:
         yield Conflict("crank", "the pin would run into the roots of the star: a longer crank comes less deep")
 
 
-# What are the outlines of star, jumper and finger?
-
 HUB, BORE = 0.45, 0.15  # of the star's root radius
 BAR = 0.5  # half the width of jumper and finger, in radii of beak and pin
 FOOT = 1.6  # radius of the jumper's foot in radii of the beak
@@ -122,109 +116,75 @@ FOOT = 1.6  # radius of the jumper's foot in radii of the beak
 
 def star(values: Jumper) -> list[Loop]:
     """Teeth with straight flanks and rounded points, a root on the x axis; a bore and a scribed hub, which touch nothing."""
-    corners = []
+    corners: list[tuple[Point, float]] = []
     for i in range(values.teeth):
-        corners.append((*polar(root_radius(values), i * pitch(values)), 0.0))
-        corners.append((*polar(values.tip_radius, (i + 0.5) * pitch(values)), values.tip_rounding))
+        corners.append((polar(root_radius(values), i * pitch(values)), 0.0))
+        corners.append((polar(values.tip_radius, (i + 0.5) * pitch(values)), values.tip_rounding))
     bore = circle("STAR", (0.0, 0.0), BORE * root_radius(values), hole=True)
-    return [Loop(tuple(rounded(corners)), "STAR"), bore, circle("HUB", (0.0, 0.0), HUB * root_radius(values))]
+    return [rounded("STAR", corners), bore, circle("HUB", (0.0, 0.0), HUB * root_radius(values))]
 
 
 def jumper(values: Jumper) -> list[Loop]:
     """The beak hangs below the pivot; arm and foot touch nothing."""
     half = BAR * values.beak_radius
     low = -values.jumper_length
-    arm = rounded([(-half, 0.0, 0.0), (-half, low, 0.0), (half, low, 0.0), (half, 0.0, 0.0)])
+    arm = polygon("ARM", [(-half, 0.0), (-half, low), (half, low), (half, 0.0)])
     beak = circle("BEAK", (0.0, low), values.beak_radius)
-    return [beak, Loop(tuple(arm), "ARM"), circle("FOOT", (0.0, 0.0), FOOT * values.beak_radius)]
+    return [beak, arm, circle("FOOT", (0.0, 0.0), FOOT * values.beak_radius)]
 
 
 def finger(values: Jumper) -> list[Loop]:
     """A pin on an arm that touches nothing; the pin on the x axis."""
     half = BAR * values.pin_radius
-    arm = rounded([(0.0, -half, 0.0), (values.crank, -half, 0.0), (values.crank, half, 0.0), (0.0, half, 0.0)])
+    arm = polygon("ARM", [(0.0, -half), (values.crank, -half), (values.crank, half), (0.0, half)])
     pin = circle("PIN", (values.crank, 0.0), values.pin_radius)
-    return [pin, Loop(tuple(arm), "ARM"), circle("HUB", (0.0, 0.0), 2.0 * values.pin_radius)]
+    return [pin, arm, circle("HUB", (0.0, 0.0), 2.0 * values.pin_radius)]
 
-
-# What does the scene of a star and its jumper say?
 
 TURNS = 2.0
-
-TEXT = """\
-# A calendar star with its jumper, drawn to these dimensions:
-{dimensions}
-
-[scene]
-title  = "Calendar star of {values.teeth} teeth with its jumper"
-schema = 1
-
-[bodies.finger]                      # turns clockwise, evenly, and carries the star on by a tooth in each turn
-drawing  = "finger.dxf"
-layers   = ["PIN"]
-pivot    = ["0 mm", "0 mm"]
-position = ["{finger[0]!r} mm", "{finger[1]!r} mm"]
-angle    = "{direction!r}°"
-motion   = "driven"
-velocity = "{speed!r} °/s"
-
-[bodies.star]                        # turns counter-clockwise, {pitch:.6g}° at a time
-drawing  = "star.dxf"
-layers   = ["STAR"]
-pivot    = ["0 mm", "0 mm"]
-position = ["0 mm", "0 mm"]
-inertia  = "{values.star_inertia:.15g} mg·cm²"
-
-[bodies.jumper]                      # holds the star between two teeth, and throws it on once the beak has passed a point
-drawing  = "jumper.dxf"
-layers   = ["BEAK"]
-pivot    = ["0 mm", "0 mm"]
-position = ["{beak!r} mm", "{values.jumper_length!r} mm"]
-inertia  = "{values.jumper_inertia:.15g} mg·cm²"
-
-[[springs]]                          # {values.preload:.6g} mN on the beak at rest, {values.rate:.6g} mN/mm more as it is lifted
-body      = "jumper"
-stiffness = "{stiffness!r} µN·m/rad"
-rest      = "{rest!r} rad"
-{drag}
-{contacts}
-[run]
-duration  = "{duration:.15g} s"
-tolerance = 1e-9
-"""
-
-DRAG = """
-[[damping]]
-body    = "star"
-coulomb = "{drag:.15g} µN·m"
-"""
-
-CONTACTS = (
-    ("finger.PIN", "star.STAR"),
-    ("jumper.BEAK", "star.STAR"),
-)
 
 
 def scene_text(values: Jumper) -> str:
     """The text of scene.toml: the star at rest, the pin on its far side."""
     direction = finger_direction(values)
-    return TEXT.format(
-        dimensions=told(values),
-        values=values,
-        contacts=contact_tables(values, *CONTACTS),
-        finger=polar(finger_distance(values), direction),
-        direction=direction,
-        speed=-values.speed,
-        pitch=pitch(values),
-        beak=beak_at_rest(values),
-        stiffness=values.rate * values.jumper_length**2,  # mN/mm · mm² = µN·m per rad
-        rest=-values.preload / (values.rate * values.jumper_length),
-        drag=DRAG.format(drag=values.drag) if values.drag > 0.0 else "",
-        duration=math.ceil(TURNS * 360.0 / values.speed * 1e6) / 1e6,
+    duration = math.ceil(TURNS * 360.0 / values.speed * 1e6) / 1e6
+    presses = f"{values.preload:.6g} mN on the beak at rest, {values.rate:.6g} mN/mm more as it is lifted"
+    return toml.scene(
+        toml.head(
+            *(values, "A calendar star with its jumper, drawn to these dimensions:"),
+            f"Calendar star of {values.teeth} teeth with its jumper",
+        ),
+        toml.body(
+            *("finger", "finger", "PIN", "turns clockwise, evenly, and carries the star on by a tooth in each turn"),
+            pivot=toml.ORIGIN,
+            position=toml.at(*polar(finger_distance(values), direction)),
+            angle=f"{direction!r}°",
+            motion="driven",
+            velocity=f"{-values.speed!r} °/s",
+        ),
+        toml.body(
+            *("star", "star", "STAR", f"turns counter-clockwise, {pitch(values):.6g}° at a time"),
+            pivot=toml.ORIGIN,
+            position=toml.ORIGIN,
+            inertia=f"{values.star_inertia:.15g} mg·cm²",
+        ),
+        toml.body(
+            *("jumper", "jumper", "BEAK"),
+            "holds the star between two teeth, and throws it on once the beak has passed a point",
+            pivot=toml.ORIGIN,
+            position=toml.at(beak_at_rest(values), values.jumper_length),
+            inertia=f"{values.jumper_inertia:.15g} mg·cm²",
+        ),
+        toml.table(
+            *("[[springs]]", presses),
+            body="jumper",
+            stiffness=f"{values.rate * values.jumper_length**2!r} µN·m/rad",  # mN/mm · mm² = µN·m per rad
+            rest=f"{-values.preload / (values.rate * values.jumper_length)!r} rad",
+        ),
+        toml.table("[[damping]]", body="star", coulomb=f"{values.drag:.15g} µN·m") if values.drag > 0.0 else None,
+        toml.contacts(values, "finger.PIN star.STAR", "jumper.BEAK star.STAR"),
+        toml.run(f"{duration:.15g} s"),
     )
-
-
-# What makes the calendar star with its jumper a design?
 
 
 def draw(values: Jumper) -> dict[str, Sheet]:

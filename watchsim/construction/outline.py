@@ -7,7 +7,7 @@ whatever the caller uses (here millimetres), angles radians unless a name says d
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import TURN, Arc, Edge, Line, Point
@@ -57,11 +57,43 @@ def circle(layer: str, centre: Point, radius: float, hole: bool = False) -> Loop
     return Loop((Arc(*centre, radius, 0.0, -TURN if hole else TURN),), layer, hole=hole)
 
 
-def rounded(corners: Sequence[tuple[float, float, float]]) -> list[Edge]:
-    """The closed polygon through (x, y, fillet radius) with its corners rounded."""
-    points = [(x, y) for x, y, _ in corners]
-    edges: list[Edge] = [Line(*points[i], *points[(i + 1) % len(points)]) for i in range(len(points))]
-    return fillet_chain(edges, [corners[(i + 1) % len(corners)][2] for i in range(len(corners))], closed=True)
+def polygon(layer: str, corners: Sequence[Point]) -> Loop:
+    """The closed polygon with sharp corners."""
+    return Loop(tuple(Line(*a, *b) for a, b in zip(corners, [*corners[1:], corners[0]], strict=True)), layer)
+
+
+def rounded(layer: str, corners: Sequence[tuple[Point, float]], yielding: bool = False) -> Loop:
+    """The closed polygon through corners that are rounded by a fillet each; `yielding` as in fillet_chain."""
+    edges = polygon(layer, [corner for corner, _ in corners]).edges
+    radii = [radius for _, radius in [*corners[1:], corners[0]]]
+    return Loop(tuple(fillet_chain(edges, radii, closed=True, yielding=yielding)), layer)
+
+
+def filleted(layer: str, parts: Sequence[tuple[Edge, float]], yielding: bool = False) -> Loop:
+    """The closed chain of edges, each with the fillet behind it."""
+    edges, radii = [edge for edge, _ in parts], [radius for _, radius in parts]
+    return Loop(tuple(fillet_chain(edges, radii, closed=True, yielding=yielding)), layer)
+
+
+def around(layer: str, edges: Sequence[Edge], angles: Iterable[float]) -> Loop:
+    """One outline of the same edges again and again, turned about the origin by each of the angles, radians."""
+    one = Loop(tuple(edges), layer)
+    return Loop(tuple(edge for angle in angles for edge in one.moved(angle, (0.0, 0.0)).edges), layer)
+
+
+def to_circle(start: Point, degrees: float, radius: float, out: bool = True) -> float:
+    """How far along a direction the circle about the origin is crossed, on the way out or, before that, on the way in."""
+    ux, uy = polar(1.0, degrees)
+    ahead = start[0] * ux + start[1] * uy
+    reach = math.sqrt(ahead**2 + radius**2 - start[0] ** 2 - start[1] ** 2)
+    return -ahead + reach if out else -ahead - reach
+
+
+def mirrored(edge: Edge) -> Edge:
+    """The mirror image in the y axis, run through the other way, so that the material stays on the left."""
+    if isinstance(edge, Line):
+        return Line(-edge.x1, edge.y1, -edge.x0, edge.y0)
+    return Arc(-edge.x, edge.y, edge.radius, math.pi - edge.start_angle - edge.sweep, edge.sweep)
 
 
 def fillet_chain(edges: Sequence[Edge], radii: Sequence[float], closed: bool = False, yielding: bool = False) -> list[Edge]:

@@ -1,4 +1,4 @@
-"""What does the scene of two gears in mesh say?"""
+"""Which shapes do several designs share: stones, arms, balances, gears, teeth, and the scenes of gears and pendulums?"""
 
 from __future__ import annotations
 
@@ -6,8 +6,20 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from watchsim.construction.design import Values, contact_tables, told
-from watchsim.construction.outline import along, angle_of, arc_between, circle, fillet_chain, polar, turned
+from watchsim.construction import scene_builder as toml
+from watchsim.construction.design import Values
+from watchsim.construction.outline import (
+    along,
+    angle_of,
+    arc_between,
+    around,
+    circle,
+    fillet_chain,
+    polar,
+    rounded,
+    to_circle,
+    turned,
+)
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import TURN, Edge, Line, Point
 
@@ -42,8 +54,7 @@ class Stone:
             self.at(self.length, self.width),
             self.at(self.length, 0.0),
         ]
-        edges: list[Edge] = [Line(*corners[i], *corners[(i + 1) % 4]) for i in range(4)]
-        return Loop(tuple(fillet_chain(edges, [0.0, edge, edge, 0.0], closed=True)), layer)
+        return rounded(layer, list(zip(corners, (0.0, 0.0, edge, edge), strict=True)))
 
 
 # What is the opening between two arms of a wheel?
@@ -58,6 +69,10 @@ class Arms:
     hub: float  # radius
     rim: float  # inner radius
     fillet: float  # in the corners of the openings
+
+    def windows(self, layer: str) -> list[Loop]:
+        """The openings, to be drawn with the wheel's layer."""
+        return [Loop(tuple(self.window(i)), layer, hole=True) for i in range(self.number)]
 
     def window(self, i: int) -> list[Edge]:
         """The opening between arms i and i + 1, clockwise."""
@@ -88,7 +103,7 @@ RADIUS_OF_GYRATION = 1.0 - 0.5 * SECTION
 ARM, HUB, FILLET = 0.085, 0.13, 0.035  # of the radius: width of an arm, radius of the hub, corners of the openings
 CLEAR_OF_ROLLER = 1.8  # times the reach of roller and stones, at least
 INNER, OUTER = 0.12, 0.62  # of the rim's radius: the hairspring's collet and stud
-TURNS, THICKNESS = 13.0, 0.03
+TURNS = 13
 PLACES = 3  # decimals of a millimetre that a scene needs
 
 
@@ -107,13 +122,13 @@ class BalanceWheel:
         return [
             circle("RIM", (0.0, 0.0), r),
             circle("RIM", (0.0, 0.0), self.staff, hole=True),
-            *(Loop(tuple(spokes.window(i)), "RIM", hole=True) for i in range(self.arms)),
+            *spokes.windows("RIM"),
         ]
 
-    def hairspring(self, stud: float) -> str:
+    def hairspring(self, stud: float) -> dict[str, object]:
         """What a scene says of the hairspring, its stud in that direction (degrees)."""
-        inner, outer = (round(share * self.radius, PLACES) for share in (INNER, OUTER))
-        return f'{{ inner = "{inner:g} mm", outer = "{outer:g} mm", turns = {TURNS:g}, stud = "{stud:g}°" }}'
+        inner, outer = (f"{round(share * self.radius, PLACES):g} mm" for share in (INNER, OUTER))
+        return {"inner": inner, "outer": outer, "turns": TURNS, "stud": f"{stud:g}°"}
 
 
 def balance_wheel(inertia: float, reach: float, staff: float, arms: int) -> BalanceWheel:
@@ -147,9 +162,9 @@ def other_flank(right: Sequence[Edge]) -> list[Edge]:
 
 def gear_outline(layer: str, tooth: Sequence[Edge], teeth: int, floor: float) -> list[Loop]:
     """The toothed contour, one tooth with its gap turned round, and the bore."""
-    one, pitch = Loop(tuple(tooth), layer), 2.0 * math.pi / teeth
-    edges = [edge for i in range(teeth) for edge in one.moved(i * pitch, (0.0, 0.0)).edges]
-    return [Loop(tuple(edges), layer), circle(layer, (0.0, 0.0), BORE * floor, hole=True)]
+    pitch = TURN / teeth
+    outline = around(layer, tooth, (i * pitch for i in range(teeth)))
+    return [outline, circle(layer, (0.0, 0.0), BORE * floor, hole=True)]
 
 
 def _mirrored(edge: Edge) -> Edge:
@@ -180,9 +195,7 @@ class ToothForm:
 
 def contour(form: ToothForm, undercut: float, layer: str, teeth: int) -> Loop:
     """All teeth, counter-clockwise; one tooth and the gap behind it, turned as often as there are teeth."""
-    tooth = Loop(tuple(tooth_and_gap(form, undercut, 360.0 / teeth)), layer)
-    edges = [edge for i in range(teeth) for edge in tooth.moved(i * TURN / teeth, (0.0, 0.0)).edges]
-    return Loop(tuple(edges), layer)
+    return around(layer, tooth_and_gap(form, undercut, 360.0 / teeth), (i * TURN / teeth for i in range(teeth)))
 
 
 def tooth_and_gap(form: ToothForm, undercut: float, pitch: float) -> list[Edge]:
@@ -191,7 +204,7 @@ def tooth_and_gap(form: ToothForm, undercut: float, pitch: float) -> list[Edge]:
     flat = math.degrees(form.land / form.tip)
     heel = polar(form.tip, flat)
     back = along(heel, flat + 180.0 - form.lean, form.back)
-    foot = along(tip, 180.0 - undercut, _reach(tip, 180.0 - undercut, form.root))
+    foot = along(tip, 180.0 - undercut, to_circle(tip, 180.0 - undercut, form.root, out=False))
     hollow, end = hollow_back(back, form.hollow, form.root)
     before = polar(form.root, (angle_of(foot) + angle_of(end) - pitch) / 2.0)
     after = turned(before, pitch)
@@ -216,65 +229,42 @@ def hollow_back(back: Point, radius: float, root: float) -> tuple[Edge, Point]:
     return arc_between(back, polar(root, bearing), polar(reach, bearing), False), polar(root, bearing)
 
 
-def _reach(start: Point, direction: float, radius: float) -> float:
-    """How far along `direction` the circle about the wheel's centre is first met."""
-    ux, uy = math.cos(math.radians(direction)), math.sin(math.radians(direction))
-    ahead = start[0] * ux + start[1] * uy
-    return -ahead - math.sqrt(ahead**2 + radius**2 - start[0] ** 2 - start[1] ** 2)
-
-
-# What does the scene of two gears in mesh say?
-
-TEXT = """\
-# {heading}, drawn to these dimensions:
-{dimensions}
-
-[scene]
-title  = "{title}, {values.wheel_teeth} and {values.pinion_teeth} teeth"
-schema = 1
-
-[bodies.wheel]                       # drives, counter-clockwise
-drawing  = "wheel.dxf"
-layers   = ["TEETH"]
-pivot    = "PIVOT"
-position = ["0 mm", "0 mm"]
-angle    = "0°"                      # a tooth on the line of centres
-inertia  = "{values.wheel_inertia:.15g} mg·cm²"
-
-[bodies.pinion]                      # a gap on the line of centres
-drawing  = "pinion.dxf"
-layers   = ["TEETH"]
-pivot    = "PIVOT"
-position = ["{distance!r} mm", "0 mm"]
-angle    = "{pinion!r}°"
-inertia  = "{values.pinion_inertia:.15g} mg·cm²"
-
-[[torques]]
-body  = "wheel"
-value = "{values.torque:.15g} µN·m"
-
-[[damping]]
-body    = "pinion"
-viscous = "{values.drag:.15g} µN·m·s/rad"
-
-{contacts}
-[run]
-duration  = "2 s"
-tolerance = 1e-10
-"""
-
-CONTACTS: tuple[tuple[str, str] | tuple[str, str, str], ...] = (("wheel.TEETH", "pinion.TEETH"),)
-
-
 def gear_pair_scene(values: Values, heading: str, title: str, distance: float) -> str:
     """The text of scene.toml: both at rest, in the middle of the play; `distance` of the axes, mm."""
     pinion = (180.0 + 180.0 / values.pinion_teeth) % (360.0 / values.pinion_teeth)
-    return TEXT.format(
-        heading=heading,
-        title=title,
-        dimensions=told(values),
-        values=values,
-        contacts=contact_tables(values, *CONTACTS),
-        distance=distance,
-        pinion=pinion,
+    return toml.scene(
+        toml.head(
+            *(values, f"{heading}, drawn to these dimensions:"),
+            f"{title}, {values.wheel_teeth} and {values.pinion_teeth} teeth",
+        ),
+        toml.body(
+            *("wheel", "wheel", "TEETH", "drives, counter-clockwise"),
+            position=toml.ORIGIN,
+            angle=toml.Noted("0°", "a tooth on the line of centres", 22),
+            inertia=f"{values.wheel_inertia:.15g} mg·cm²",
+        ),
+        toml.body(
+            *("pinion", "pinion", "TEETH", "a gap on the line of centres"),
+            position=toml.at(distance, 0),
+            angle=f"{pinion!r}°",
+            inertia=f"{values.pinion_inertia:.15g} mg·cm²",
+        ),
+        toml.torque("wheel", f"{values.torque:.15g} µN·m"),
+        toml.table("[[damping]]", body="pinion", viscous=f"{values.drag:.15g} µN·m·s/rad"),
+        toml.contacts(values, "wheel.TEETH pinion.TEETH"),
+        toml.run("2 s", "1e-10"),
     )
+
+
+def bob_and_rod(values: Values, bob: float, thickness: float) -> tuple[str, str]:
+    """The solids of a pendulum, its bob so thick that it has its mass: density of the bob, kg/m³; thickness of the rod, mm."""
+    thick = values.bob_mass / (bob * (math.pi * values.bob_radius**2)) * 1e9
+    mass = toml.Noted(f"{thick!r} mm", f"makes its mass {values.bob_mass:.6g} kg", 7)
+    solids = "[[bodies.pendulum.solids]]"
+    return (
+        toml.table(solids, layer="BOB", thickness=mass, density=f"{bob:g} kg/m³"),
+        toml.table(solids, layer="ROD", thickness=f"{thickness:g} mm", density=f"{ROD_DENSITY:g} kg/m³"),
+    )
+
+
+ROD_DENSITY = 7850.0  # kg/m³, steel

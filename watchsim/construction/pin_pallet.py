@@ -1,21 +1,21 @@
-"""The pin pallet as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Pin-pallet (Roskopf) lever escapement with its balance: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from itertools import pairwise
 
 import numpy as np
 from scipy.optimize import brentq
 
-from watchsim.construction.design import Conflict, Design, Impossible, contact_tables, dim, told
-from watchsim.construction.outline import angle_of, circle, fillet_chain, polar, turned
-from watchsim.construction.swiss_lever import dart_clearance, pin_reach
+from watchsim.construction import scene_builder as toml
+from watchsim.construction.design import CHOSEN, ESTIMATE, Conflict, Design, Impossible, dim
+from watchsim.construction.outline import angle_of, circle, polar, rounded, turned
+from watchsim.construction.swiss_lever import dart_clearance, pin_reach, rest
 from watchsim.construction.swiss_lever_outlines import (
-    BORE_RADIUS_SWISS_LEVER_LEVER,
-    HUB_RADIUS_SWISS_LEVER_LEVER,
+    LEVER_BORE,
+    LEVER_HUB,
     Swiss,
     banking,
     crescent_needed,
@@ -32,7 +32,7 @@ from watchsim.construction.swiss_lever_outlines import (
 )
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
-from watchsim.geometry.primitives import Edge, Line, Point
+from watchsim.geometry.primitives import Point
 
 # Which numbers does the designer of a pin-pallet lever escapement choose?
 #
@@ -40,8 +40,7 @@ from watchsim.geometry.primitives import Edge, Line, Point
 # and
 # horn at the balance's.
 
-PLAYTNER, CHOSEN, USUAL = "as in a Swiss lever, Playtner 1910", "chosen for this design", "usual in pin-lever watches"
-ESTIMATE = "estimate: not published"
+PLAYTNER, USUAL = "as in a Swiss lever, Playtner 1910", "usual in pin-lever watches"
 
 
 @dataclass(frozen=True)
@@ -275,8 +274,6 @@ def _from_back(design: PinLever, centre: Point) -> float:
     return math.copysign(math.dist(centre, nearest), beyond)
 
 
-# Which dimensions of a pin-pallet escapement do not go together?
-
 LEAST_TOOTH, LEAST_GAP, LEAST_RISE = 2.0, 1.0, 3.0  # degrees
 SPANS = (18.0, 50.0)  # degrees, half of what the pins embrace
 STEEPEST = 50.0  # degrees of an impulse face from the wheel's rim
@@ -378,7 +375,7 @@ def pin_pallet_lever(design: PinLever) -> list[Loop]:
     return [
         *(circle("PALLETS", design.pallet(side), design.pin) for side in (1, -1)),
         body(design),
-        circle("ARMS", (0.0, 0.0), BORE_RADIUS_SWISS_LEVER_LEVER * design.lever_scale, hole=True),
+        circle("ARMS", (0.0, 0.0), LEVER_BORE * design.lever_scale, hole=True),
         fork(design),
         dart(design),
     ]
@@ -386,9 +383,9 @@ def pin_pallet_lever(design: PinLever) -> list[Loop]:
 
 def body(design: PinLever) -> Loop:
     """Stem and two arms, counter-clockwise from the right end of the stem's top; one half is the other mirrored."""
-    hub, half, boss = HUB_RADIUS_SWISS_LEVER_LEVER * design.lever_scale, design.stem_half, BOSS * design.pin
+    hub, half, boss = LEVER_HUB * design.lever_scale, design.stem_half, BOSS * design.pin
     x, y = design.pallet(-1)
-    way = _direction((x, y))
+    way = (x / (x**2 + y**2) ** 0.5, y / (x**2 + y**2) ** 0.5)
     right: list[tuple[Point, float]] = [
         (polar(1.2 * hub, 250.0 + 20.0), hub),
         (_beside((x, y), way, boss, -boss), 0.95 * boss),
@@ -398,116 +395,51 @@ def body(design: PinLever) -> Loop:
         ((half, neck_height(design)), 0.0),
     ]
     left = [((-x, y), radius) for (x, y), radius in reversed(right[1:])]
-    corners = [*right, *left]
-    places = [place for place, _ in corners]
-    edges: list[Edge] = [Line(*a, *b) for a, b in pairwise([*places, places[0]])]
-    radii = [radius for _, radius in [*corners[1:], corners[0]]]
-    return Loop(tuple(fillet_chain(edges, radii, closed=True, yielding=True)), "ARMS")
-
-
-def _direction(point: Point) -> Point:
-    length = (point[0] ** 2 + point[1] ** 2) ** 0.5
-    return (point[0] / length, point[1] / length)
+    return rounded("ARMS", [*right, *left], yielding=True)
 
 
 def _beside(point: Point, way: Point, ahead: float, left: float) -> Point:
     return (point[0] + ahead * way[0] - left * way[1], point[1] + ahead * way[1] + left * way[0])
 
 
-# What does the scene of a pin-pallet escapement say?
-
 CLEAR = 1e-4  # degrees by which lever and wheel stand off what they rest on
-
-TEXT = """\
-# A pin-pallet (Roskopf) lever escapement, drawn to these dimensions:
-{dimensions}
-
-[scene]
-title  = "Pin-pallet lever, {values.frequency:.0f} vph, {values.teeth} teeth"
-schema = 1
-
-[bodies.wheel]                       # turns clockwise
-drawing  = "escape_wheel.dxf"
-layers   = ["TEETH"]
-pivot    = "PIVOT"
-position = ["0 mm", "0 mm"]
-angle    = "{wheel_angle!r}°"        # a tooth just off the entry pin
-inertia  = "{values.wheel_inertia:.15g} mg·cm²"      # with the train as felt here
-
-[bodies.lever]
-drawing  = "lever.dxf"
-layers   = ["PALLETS", "FORK", "DART", "ARMS"]
-pivot    = "PIVOT"
-position = ["0 mm", "{lever_y!r} mm"]
-angle    = "{lever_angle!r}°"        # just off the bank
-inertia  = "{values.lever_inertia:.15g} mg·cm²"
-
-[bodies.balance]                     # hangs at the end of a swing, the impulse pin far outside the fork
-drawing  = "roller.dxf"
-layers   = ["TABLE", "SAFETY", "PIN"]
-draw     = ["RIM"]
-pivot    = "PIVOT"
-position = ["0 mm", "{balance_y!r} mm"]
-angle    = "{start!r}°"
-inertia  = "{values.balance_inertia:.15g} mg·cm²"
-
-[bodies.banking]
-drawing  = "banking.dxf"
-layers   = ["PINS"]
-pivot    = "PIVOT"
-position = ["0 mm", "0 mm"]
-motion   = "fixed"
-
-[[springs]]
-body      = "balance"
-frequency = "{values.frequency:.15g} vph"
-draw      = {hairspring}
-
-[[torques]]
-body  = "wheel"
-value = "{torque!r} µN·m"
-
-[[damping]]
-body     = "balance"
-q_factor = {values.q_factor!r}
-
-{contacts}
-[run]
-duration  = "10 s"
-tolerance = 1e-9
-
-[timegrapher]
-lift_angle = "{values.lift_angle:.15g}°"
-"""
-
-CONTACTS: tuple[tuple[str, str] | tuple[str, str, str], ...] = (
-    ("wheel.TEETH", "lever.PALLETS"),
-    ("lever.FORK", "balance.PIN"),
-    ("lever.DART", "balance.SAFETY", "safety action: never meets in normal running"),
-    ("lever.ARMS", "banking.PINS"),
-)
 
 
 def scene_text(values: PinPallet) -> str:
     """The text of scene.toml: lever on its entry bank, a tooth on the entry pin, the balance about to be let go."""
     design = pin_lever(values)
     lever = design.bank - CLEAR
-    pitch = 360.0 / values.teeth
-    return TEXT.format(
-        dimensions=told(values),
-        values=values,
-        contacts=contact_tables(values, *CONTACTS),
-        wheel_angle=round((design.locked_corner(1, lever) + CLEAR) % pitch, 9),
-        lever_y=design.lever_pivot[1],
-        lever_angle=round(lever, 10),
-        balance_y=design.balance_pivot[1],
-        start=-values.start,
-        hairspring=wheel_of(design, values.balance_inertia).hairspring(90.0),
-        torque=-values.torque,
+    wheel_angle = round((design.locked_corner(1, lever) + CLEAR) % (360.0 / values.teeth), 9)
+    return toml.scene(
+        toml.head(
+            *(values, "A pin-pallet (Roskopf) lever escapement, drawn to these dimensions:"),
+            f"Pin-pallet lever, {values.frequency:.0f} vph, {values.teeth} teeth",
+        ),
+        toml.body(
+            *("wheel", "escape_wheel", "TEETH", "turns clockwise"),
+            position=toml.ORIGIN,
+            angle=toml.Noted(f"{wheel_angle!r}°", "a tooth just off the entry pin"),
+            inertia=toml.Noted(f"{values.wheel_inertia:.15g} mg·cm²", "with the train as felt here", 6),
+        ),
+        toml.body(
+            *("lever", "lever", "PALLETS FORK DART ARMS"),
+            position=toml.at(0, design.lever_pivot[1]),
+            angle=toml.Noted(f"{round(lever, 10)!r}°", "just off the bank"),
+            inertia=f"{values.lever_inertia:.15g} mg·cm²",
+        ),
+        toml.body(
+            *("balance", "roller", "TABLE SAFETY PIN"),
+            "hangs at the end of a swing, the impulse pin far outside the fork",
+            draw="RIM",
+            position=toml.at(0, design.balance_pivot[1]),
+            angle=f"{-values.start!r}°",
+            inertia=f"{values.balance_inertia:.15g} mg·cm²",
+        ),
+        toml.banking(),
+        toml.hairspring(values.frequency, wheel_of(design, values.balance_inertia).hairspring(90.0)),
+        toml.torque("wheel", f"{-values.torque!r} µN·m"),
+        rest(values, "wheel.TEETH lever.PALLETS"),
     )
-
-
-# What makes the pin-pallet escapement a design?
 
 
 def draw(values: PinPallet) -> dict[str, Sheet]:

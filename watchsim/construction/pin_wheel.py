@@ -1,15 +1,15 @@
-"""The pin wheel as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Pin-wheel escapement of a tower clock with its pendulum: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import pairwise
 
-from watchsim.construction.design import Conflict, Design, contact_tables, dim, told
-from watchsim.construction.outline import angle_of, arc_between, circle, fillet_chain, polar, turned
-from watchsim.construction.parts import Arms
+from watchsim.construction import scene_builder as toml
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim
+from watchsim.construction.outline import angle_of, arc_between, circle, polar, polygon, rounded, turned
+from watchsim.construction.parts import Arms, bob_and_rod
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Edge, Line, Point
@@ -18,7 +18,7 @@ from watchsim.geometry.primitives import Edge, Line, Point
 #
 # A tower clock's size. Angles of lock and lift are at the pendulum's pivot, of the drop at the wheel's.
 
-CHOSEN, GOODRICH = "chosen for this design", "Goodrich, The Modern Clock (1905), ch. IX"
+GOODRICH = "Goodrich, The Modern Clock (1905), ch. IX"
 AS_GRAHAM = "as usual with a dead-beat anchor"
 
 
@@ -111,8 +111,6 @@ class PinAnchor:
         return locking, self.from_pivot(edge, -side * self.released)
 
 
-# Which dimensions of a pin-wheel escapement do not go together?
-
 LEAST_DRIVEN = 1.0  # degrees of the wheel
 SLOPES = (20.0, 80.0)  # degrees of an impulse face from the resting face
 LEAST_SPACE = 0.5  # of a pin's radius, between two pins
@@ -185,7 +183,7 @@ def wheel(anchor: PinAnchor) -> list[Loop]:
     return [
         *(half_pin(anchor, i * 2.0 * anchor.half_pitch) for i in range(anchor.values.pins)),
         circle("RIM", (0.0, 0.0), outer),
-        *(Loop(tuple(arms.window(i)), "RIM", hole=True) for i in range(ARMS)),
+        *arms.windows("RIM"),
         circle("RIM", (0.0, 0.0), BORE * size, hole=True),
     ]
 
@@ -207,7 +205,7 @@ def pendulum(anchor: PinAnchor) -> list[Loop]:
         pallet(anchor, -1),
         arms(anchor),
         circle("ANCHOR", (0.0, 0.0), HOLE * size, hole=True),
-        Loop(tuple(Line(*rod[i], *rod[(i + 1) % 4]) for i in range(4)), "ROD"),
+        polygon("ROD", rod),
         circle("BOB", (0.0, low), values.bob_radius),
     ]
 
@@ -242,10 +240,7 @@ def arms(anchor: PinAnchor) -> Loop:
         (right[1], 0.4 * half),
         (right[0], 0.4 * half),
     ]
-    places = [place for place, _ in corners]
-    edges: list[Edge] = [Line(*a, *b) for a, b in pairwise([*places, places[0]])]
-    radii = [radius for _, radius in [*corners[1:], corners[0]]]
-    return Loop(tuple(fillet_chain(edges, radii, closed=True, yielding=True)), "ANCHOR")
+    return rounded("ANCHOR", corners, yielding=True)
 
 
 def _leg(anchor: PinAnchor, side: int, half: float) -> tuple[Point, Point]:
@@ -256,87 +251,36 @@ def _leg(anchor: PinAnchor, side: int, half: float) -> tuple[Point, Point]:
     return polar(end, foot - side * 1.5 * beside), polar(end, foot + side * 0.5 * beside)
 
 
-# What does the scene of a pin-wheel escapement say?
-
 CLEAR = 1e-5  # degrees by which the pin stands off the pallet at the start
 IRON = 7200.0  # kg/m³
-ROD_DENSITY, ROD_THICKNESS = 7850.0, 4.0  # steel; mm
-
-TEXT = """\
-# A pin-wheel escapement with its pendulum, drawn to these dimensions:
-{dimensions}
-
-[scene]
-title   = "Pin-wheel escapement, {values.pins} pins"
-schema  = 1
-gravity = ["0 m/s²", "{gravity!r} m/s²"]
-
-[bodies.wheel]                       # turns clockwise
-drawing  = "escape_wheel.dxf"
-layers   = ["PINS"]
-draw     = ["RIM"]
-pivot    = "PIVOT"
-position = ["0 mm", "0 mm"]
-angle    = "{wheel_angle!r}°"        # a pin just off the resting face of the lower pallet
-inertia  = "{values.wheel_inertia:.15g} g·mm²"
-
-[bodies.pendulum]                    # with the anchor; let go on the right
-drawing  = "pendulum.dxf"
-layers   = ["PALLETS"]
-pivot    = "PIVOT"
-position = ["{pivot[0]!r} mm", "{pivot[1]!r} mm"]
-angle    = "{values.start!r}°"
-
-[[bodies.pendulum.solids]]
-layer     = "BOB"
-thickness = "{thickness!r} mm"       # makes its mass {values.bob_mass:.6g} kg
-density   = "{iron:g} kg/m³"
-
-[[bodies.pendulum.solids]]
-layer     = "ROD"
-thickness = "{rod_thickness:g} mm"
-density   = "{rod_density:g} kg/m³"
-
-[[torques]]
-body  = "wheel"
-value = "{torque:.15g} mN·m"
-
-[[damping]]
-body     = "pendulum"
-q_factor = {values.q_factor!r}
-
-{contacts}
-[run]
-duration  = "60 s"
-tolerance = 1e-12
-
-[timegrapher]
-lift_angle = "{values.lift!r}°"
-"""
-
-CONTACTS: tuple[tuple[str, str] | tuple[str, str, str], ...] = (("wheel.PINS", "pendulum.PALLETS"),)
 
 
 def scene_text(values: PinWheel) -> str:
     """The text of scene.toml: a pin at rest on the lower pallet, the pendulum about to be let go."""
     anchor = PinAnchor(values)
-    area = math.pi * values.bob_radius**2
-    return TEXT.format(
-        dimensions=told(values),
-        values=values,
-        contacts=contact_tables(values, *CONTACTS),
-        gravity=-values.gravity,
-        wheel_angle=(anchor.locked(1) + CLEAR) % (2.0 * anchor.half_pitch),
-        pivot=anchor.pivot,
-        thickness=values.bob_mass / (IRON * area) * 1e9,
-        iron=IRON,
-        rod_thickness=ROD_THICKNESS,
-        rod_density=ROD_DENSITY,
-        torque=-values.torque,
+    words = "A pin-wheel escapement with its pendulum, drawn to these dimensions:"
+    wheel_angle = (anchor.locked(1) + CLEAR) % (2.0 * anchor.half_pitch)
+    return toml.scene(
+        toml.head(values, words, f"Pin-wheel escapement, {values.pins} pins", gravity=values.gravity),
+        toml.body(
+            *("wheel", "escape_wheel", "PINS", "turns clockwise"),
+            draw="RIM",
+            position=toml.ORIGIN,
+            angle=toml.Noted(f"{wheel_angle!r}°", "a pin just off the resting face of the lower pallet"),
+            inertia=f"{values.wheel_inertia:.15g} g·mm²",
+        ),
+        toml.body(
+            *("pendulum", "pendulum", "PALLETS", "with the anchor; let go on the right"),
+            position=toml.at(*anchor.pivot),
+            angle=f"{values.start!r}°",
+        ),
+        *bob_and_rod(values, IRON, 4.0),
+        toml.torque("wheel", f"{-values.torque:.15g} mN·m"),
+        toml.q_factor("pendulum", values.q_factor),
+        toml.contacts(values, "wheel.PINS pendulum.PALLETS"),
+        toml.run("60 s", "1e-12"),
+        toml.timegrapher(f"{values.lift!r}°"),
     )
-
-
-# What makes the pin-wheel escapement a design?
 
 
 def draw(values: PinWheel) -> dict[str, Sheet]:

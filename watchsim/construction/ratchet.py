@@ -1,4 +1,4 @@
-"""The ratchet as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Ratchet wheel with its click: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -6,15 +6,12 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from watchsim.construction.design import Conflict, Design, contact_tables, dim, told
-from watchsim.construction.outline import along, angle_of, circle, polar, rounded
+from watchsim.construction import scene_builder as toml
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim
+from watchsim.construction.outline import along, angle_of, circle, polar, polygon
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Point
-
-# Which numbers does the designer of a ratchet wheel and its click choose?
-
-CHOSEN = "chosen for this design"
 
 
 @dataclass(frozen=True)
@@ -80,8 +77,6 @@ def pivot(values: Ratchet) -> Point:
     return along(nose(values), -values.click_angle, values.click_length)
 
 
-# What are the outlines of a ratchet wheel and its click?
-
 BORE = 0.15  # of the tip radius
 FOOT = 3.0  # radius of the click about its pivot, in radii of its nose
 
@@ -89,90 +84,62 @@ FOOT = 3.0  # radius of the click about its pivot, in radii of its nose
 def wheel(values: Ratchet) -> list[Loop]:
     """Saw teeth, the first root at 0°; bore."""
     corners = []
-    for i in range(values.teeth):
-        turn = i * pitch(values)
-        corners.append((*polar(root(values)[0], turn), 0.0))
-        corners.append((*polar(values.tip_radius, turn + angle_of(tip(values))), 0.0))
-    return [Loop(tuple(rounded(corners)), "TEETH"), circle("TEETH", (0.0, 0.0), BORE * values.tip_radius, hole=True)]
+    for turn in (i * pitch(values) for i in range(values.teeth)):
+        corners += [polar(root(values)[0], turn), polar(values.tip_radius, turn + angle_of(tip(values)))]
+    return [polygon("TEETH", corners), circle("TEETH", (0.0, 0.0), BORE * values.tip_radius, hole=True)]
 
 
 def click(values: Ratchet) -> list[Loop]:
     """The nose to the left of the pivot; arm and foot touch nothing."""
     r, far, wide = values.nose_radius, -values.click_length, FOOT * values.nose_radius
-    arm = rounded([(far, -r, 0.0), (0.0, -wide, 0.0), (0.0, wide, 0.0), (far, r, 0.0)])
-    return [circle("NOSE", (far, 0.0), r), Loop(tuple(arm), "ARM"), circle("FOOT", (0.0, 0.0), wide)]
+    arm = polygon("ARM", [(far, -r), (0.0, -wide), (0.0, wide), (far, r)])
+    return [circle("NOSE", (far, 0.0), r), arm, circle("FOOT", (0.0, 0.0), wide)]
 
-
-# What does the scene of a ratchet wheel and its click say?
 
 WOUND = 0.35  # rad of the click's spring at rest: it hardly weakens as the click is lifted
-
-TEXT = """\
-# A ratchet wheel with its click, drawn to these dimensions:
-{dimensions}
-
-[scene]
-title  = "Ratchet wheel of {values.teeth} teeth with its click"
-schema = 1
-
-[bodies.wheel]                       # wound counter-clockwise
-drawing  = "wheel.dxf"
-layers   = ["TEETH"]
-pivot    = ["0 mm", "0 mm"]
-inertia  = "{values.wheel_inertia:.15g} mg·cm²"
-
-[bodies.click]
-drawing  = "click.dxf"
-layers   = ["NOSE"]
-pivot    = ["0 mm", "0 mm"]
-position = ["{pivot[0]!r} mm", "{pivot[1]!r} mm"]
-angle    = "{angle!r} rad"
-inertia  = "{values.click_inertia:.15g} mg·cm²"
-
-[[springs]]                          # presses the nose into the teeth with {values.click_force:.6g} mN
-body      = "click"
-stiffness = "{stiffness!r} µN·m/rad"
-rest      = "{rest!r} rad"
-
-[[torques]]                          # the mainspring
-body  = "wheel"
-value = "{mainspring!r} mN·m"
-
-[[torques]]                          # the hand that winds, and lets go
-body  = "wheel"
-over  = "time"
-table = [["0.05 s", "0 mN·m"], ["0.07 s", "{winding} mN·m"], ["0.35 s", "{winding} mN·m"], ["0.37 s", "0 mN·m"]]
-
-[[damping]]
-body    = "wheel"
-viscous = "{values.viscous:.15g} mN·m·s/rad"
-
-{contacts}
-[run]
-duration  = "0.5 s"
-tolerance = 1e-9
-"""
-
-CONTACTS = (("click.NOSE", "wheel.TEETH"),)
 
 
 def scene_text(values: Ratchet) -> str:
     """The text of scene.toml: the click holds, the wheel is wound, the click holds again."""
-    angle = -math.radians(values.click_angle)
-    return TEXT.format(
-        dimensions=told(values),
-        values=values,
-        contacts=contact_tables(values, *CONTACTS),
-        pivot=pivot(values),
-        angle=angle,
-        stiffness=values.click_force * values.click_length / WOUND,  # mN·mm = µN·m
-        rest=angle + WOUND,
-        mainspring=-values.mainspring,
-        winding=f"{values.winding:.15g}",
+    angle, hand = -math.radians(values.click_angle), f"{values.winding:.15g} mN·m"
+    return toml.scene(
+        toml.head(
+            *(values, "A ratchet wheel with its click, drawn to these dimensions:"),
+            f"Ratchet wheel of {values.teeth} teeth with its click",
+        ),
+        toml.body(
+            "wheel",
+            "wheel",
+            "TEETH",
+            "wound counter-clockwise",
+            pivot=toml.ORIGIN,
+            inertia=f"{values.wheel_inertia:.15g} mg·cm²",
+        ),
+        toml.body(
+            *("click", "click", "NOSE"),
+            pivot=toml.ORIGIN,
+            position=toml.at(*pivot(values)),
+            angle=f"{angle!r} rad",
+            inertia=f"{values.click_inertia:.15g} mg·cm²",
+        ),
+        toml.table(
+            *("[[springs]]", f"presses the nose into the teeth with {values.click_force:.6g} mN"),
+            body="click",
+            stiffness=f"{values.click_force * values.click_length / WOUND!r} µN·m/rad",  # mN·mm = µN·m
+            rest=f"{angle + WOUND!r} rad",
+        ),
+        toml.torque("wheel", f"{-values.mainspring!r} mN·m", "the mainspring"),
+        toml.table(
+            *("[[torques]]", "the hand that winds, and lets go"),
+            body="wheel",
+            over="time",
+            table=(("0.05 s", "0 mN·m"), ("0.07 s", hand), ("0.35 s", hand), ("0.37 s", "0 mN·m")),
+        ),
+        toml.table("[[damping]]", body="wheel", viscous=f"{values.viscous:.15g} mN·m·s/rad"),
+        toml.contacts(values, "click.NOSE wheel.TEETH"),
+        toml.run("0.5 s"),
     )
 
-
-# What makes the ratchet wheel with its click a design?
 
 NARROWEST = 20.0  # degrees
 

@@ -1,17 +1,14 @@
-"""The recoil anchor as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Recoil anchor escapement with its pendulum: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from watchsim.construction import graham as checks
-from watchsim.construction import graham as texts
-from watchsim.construction.design import Conflict, Design, dim
-from watchsim.construction.graham import CHOSEN, Anchor, Graham, sheets
+from watchsim.construction import graham
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim
+from watchsim.construction.graham import Anchor, Graham
 from watchsim.drawing.write import Sheet
-
-# Which numbers does the designer of a recoil anchor with its pendulum choose?
 
 
 @dataclass(frozen=True)
@@ -23,26 +20,23 @@ class RecoilAnchor(Graham):
     )
 
 
-# What makes the recoil anchor a design?
-
-
 def _anchor(values: RecoilAnchor) -> Anchor:
     return Anchor(values, values.recoil)
 
 
 def draw(values: RecoilAnchor) -> dict[str, Sheet]:
     """Its two sheets."""
-    return sheets(_anchor(values))
+    return graham.sheets(_anchor(values))
 
 
 def scene(values: RecoilAnchor) -> str:
     """Its scene."""
-    return texts.scene_text(_anchor(values), "Recoil anchor escapement")
+    return graham.scene_text(_anchor(values), "Recoil anchor escapement")
 
 
 def conflicts(values: RecoilAnchor) -> Iterator[Conflict]:
     """What does not go together."""
-    return checks.conflicts(_anchor(values))
+    return graham.conflicts(_anchor(values))
 
 
 DESIGN = Design("recoil_anchor", "Recoil anchor escapement with its pendulum", RecoilAnchor, draw, scene, conflicts)

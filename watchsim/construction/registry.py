@@ -1,41 +1,59 @@
-"""Which designs are there? Each is loaded when it is asked for."""
+"""Which designs are there? Every module of this package that defines DESIGN, and those that other packages name as entry points
+of the group "watchsim.designs" (name -> module:DESIGN). Each is loaded when it is requested."""
 
 from __future__ import annotations
 
 import importlib
+import pkgutil
+from functools import cache
+from importlib.metadata import EntryPoint, entry_points
+from pathlib import Path
 
+from watchsim import construction
 from watchsim.construction.design import Design
 
-_HOMES = {
-    "swiss_lever": "watchsim.construction.swiss_lever",
-    "remontoir": "watchsim.construction.remontoir",
-    "tourbillon": "watchsim.construction.tourbillon",
-    "coaxial": "watchsim.construction.coaxial",
-    "detent": "watchsim.construction.detent",
-    "pin_pallet": "watchsim.construction.pin_pallet",
-    "pin_wheel": "watchsim.construction.pin_wheel",
-    "cylinder": "watchsim.construction.cylinder",
-    "duplex": "watchsim.construction.duplex",
-    "geneva": "watchsim.construction.geneva",
-    "geneva_stop": "watchsim.construction.geneva_stop",
-    "graham": "watchsim.construction.graham",
-    "recoil_anchor": "watchsim.construction.recoil_anchor",
-    "grasshopper": "watchsim.construction.grasshopper",
-    "verge": "watchsim.construction.verge",
-    "involute_pair": "watchsim.construction.involute_pair",
-    "cycloidal_pair": "watchsim.construction.cycloidal_pair",
-    "jumper": "watchsim.construction.jumper",
-    "cam": "watchsim.construction.cam",
-    "snail": "watchsim.construction.snail",
-    "governor": "watchsim.construction.governor",
-    "ratchet": "watchsim.construction.ratchet",
-    "winding_click": "watchsim.construction.winding_click",
-}
+GROUP = "watchsim.designs"
+FIRST = "swiss_lever"  # listed first, as the one that examples use; all others by the alphabet
 
-NAMES = tuple(_HOMES)
+
+@cache
+def _own() -> tuple[str, ...]:
+    """Names of the modules whose source has a line that begins with DESIGN: none is imported for that."""
+    found = []
+    for one in pkgutil.iter_modules(construction.__path__):
+        source = Path(construction.__path__[0], f"{one.name}.py").read_text(encoding="utf-8")
+        if "\nDESIGN = " in source:
+            found.append(one.name)
+    return tuple(sorted(found, key=lambda name: (name != FIRST, name)))
+
+
+def _others() -> dict[str, EntryPoint]:
+    """Those of installed packages; a name of ours stays ours."""
+    return {one.name: one for one in entry_points(group=GROUP) if one.name not in _own()}
+
+
+class BrokenDesign(ImportError):
+    """An entry point that gives no design."""
+
+    def __init__(self, name: str, point: EntryPoint, words: str) -> None:
+        super().__init__(f'the design "{name}" of another package ({point.value}, entry point in {GROUP}) {words}')
+
+
+def names() -> tuple[str, ...]:
+    """Ours first, then those of other packages by the alphabet."""
+    return (*_own(), *sorted(_others()))
 
 
 def design(name: str) -> Design:
-    """The design of that name; KeyError if there is none."""
-    found: Design = importlib.import_module(_HOMES[name]).DESIGN
+    """The design of that name; KeyError if there is none, BrokenDesign if that of another package does not load."""
+    if name in _own():
+        own: Design = importlib.import_module(f"{construction.__name__}.{name}").DESIGN
+        return own
+    point = _others()[name]
+    try:
+        found = point.load()
+    except Exception as error:  # whatever the other package does wrong
+        raise BrokenDesign(name, point, f"cannot be loaded: {type(error).__name__}: {error}") from error
+    if not isinstance(found, Design) or found.name != name:
+        raise BrokenDesign(name, point, f'must be a Design of the name "{name}"')
     return found

@@ -1,4 +1,4 @@
-"""The remontoir as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Remontoir before a Swiss lever: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -6,17 +6,15 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from watchsim.construction import scene_builder as toml
 from watchsim.construction import swiss_lever as lever
-from watchsim.construction.design import Conflict, Design, Impossible, contact_tables, dim, told
-from watchsim.construction.outline import arc_between, circle, polar, rounded
-from watchsim.construction.swiss_lever import CLEAR, parts, rest, swiss, wheel_angle
+from watchsim.construction.design import CHOSEN, Conflict, Design, Impossible, dim
+from watchsim.construction.outline import arc_between, circle, polar, polygon
+from watchsim.construction.swiss_lever import CLEAR, ESTIMATE, SwissLever, swiss, wheel_angle
 from watchsim.construction.swiss_lever import draw as draw_lever
-from watchsim.construction.swiss_lever_outlines import CHOSEN, ESTIMATE, SwissLever
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Edge, Line, Point
-
-# Which numbers does the designer of a remontoir before a Swiss lever choose?
 
 
 @dataclass(frozen=True)
@@ -145,7 +143,7 @@ def _pallet(inner: float, outer: float, first: float, last: float) -> Loop:
 def _prong(values: Remontoir, side: int) -> Loop:
     near, far = _slot(values), _outside(values)
     left, right = values.arm - PRONG * values.disc, values.arm + PRONG * values.disc
-    return _polygon("FORK", [(left, side * near), (right, side * near), (right, side * far), (left, side * far)][::side])
+    return polygon("FORK", [(left, side * near), (right, side * near), (right, side * far), (left, side * far)][::side])
 
 
 def _arms(values: Remontoir, radius: float, upper: float, lower: float) -> tuple[Loop, ...]:
@@ -155,7 +153,7 @@ def _arms(values: Remontoir, radius: float, upper: float, lower: float) -> tuple
     beam = [(-root, -hub), (neck, -hub), (fork, -far), (fork, far), (neck, hub), (-root, hub)]
     above = [polar(radius - half, upper - 23.0), polar(hub, 60.0), polar(hub, 180.0), polar(radius + half, upper - 15.0)]
     below = [polar(radius - half, lower + 15.0), polar(hub, 180.0), polar(hub, 300.0), polar(radius - half, lower + 23.0)]
-    return _polygon("ARM", beam), _polygon("UPPER", above), _polygon("LOWER", below)
+    return polygon("ARM", beam), polygon("UPPER", above), polygon("LOWER", below)
 
 
 def _slot(values: Remontoir) -> float:
@@ -167,104 +165,78 @@ def _outside(values: Remontoir) -> float:
     return _slot(values) + WALL * values.disc
 
 
-def _polygon(layer: str, corners: list[Point]) -> Loop:
-    return Loop(tuple(rounded([(x, y, 0.0) for x, y in corners])), layer)
+WORDS = """\
+A remontoir before a Swiss lever: the train does not drive the escape wheel but winds a weak spring on its arbor. An eccentric
+disc on the escape wheel leads a stop lever; twice in a turn it lets a tooth of the stop wheel go, and the train winds the
+spring by half a turn. So the escapement feels the spring alone, whatever the mainspring does. Drawn to these dimensions:"""
+
+WINDER = (("-0.06 mm", "-0.06 mm"), ("1.1 mm", "-0.06 mm"), ("1.1 mm", "0.06 mm"), ("-0.06 mm", "0.06 mm"))
 
 
-# What does the scene of a remontoir before a Swiss lever say?
-
-HEAD = """\
-# A remontoir before a Swiss lever: the train does not drive the escape wheel but winds a weak spring on its arbor. An eccentric
-# disc on the escape wheel leads a stop lever; twice in a turn it lets a tooth of the stop wheel go, and the train winds the
-# spring by half a turn. So the escapement feels the spring alone, whatever the mainspring does. Drawn to these dimensions:
-{dimensions}
-
-[scene]
-title  = "Remontoir before a Swiss lever"
-schema = 1
-
-"""
-
-OWN = """\
-[bodies.eccentric]                   # on the escape wheel
-on       = "wheel"
-motion   = "fixed"
-circle   = "{values.disc:.15g} mm"
-position = ["{disc[0]!r} mm", "{disc[1]!r} mm"]
-
-[bodies.winder]                      # holds the outer end of the spring; on the axis of the escape wheel
-polygon  = [["-0.06 mm", "-0.06 mm"], ["1.1 mm", "-0.06 mm"], ["1.1 mm", "0.06 mm"], ["-0.06 mm", "0.06 mm"]]
-position = ["0 mm", "0 mm"]
-inertia  = "{values.winder_inertia:.15g} mg·cm²"
-
-[bodies.stop_wheel]                  # turns counter-clockwise, by half a pitch for half a turn of the winder
-drawing  = "stop_wheel.dxf"
-layers   = ["TEETH"]
-pivot    = ["0 mm", "0 mm"]
-position = ["{stop_x!r} mm", "0 mm"]
-angle    = "{stop_wheel:.15g}°"      # a tooth a few nanometres off the upper pallet
-inertia  = "{values.stop_wheel_inertia:.15g} mg·cm²"      # with the train as felt here
-
-[bodies.stop_lever]
-drawing  = "stop_lever.dxf"
-layers   = ["PALLETS", "FORK"]
-pivot    = ["0 mm", "0 mm"]
-position = ["{lever_x!r} mm", "0 mm"]
-angle    = "{stop_lever!r}°"
-inertia  = "{values.stop_lever_inertia:.15g} mg·cm²"
-
-[[gears]]
-between = ["stop_wheel", "winder"]
-ratio   = {ratio}
-
-[[torques]]                          # the remontoir's spring, wound far: so much in the middle between two windings ...
-body    = "wheel"
-against = "winder"
-value   = "{torque:.15g} µN·m"
-
-[[springs]]                          # ... and {share:.3g} % more or less at their ends, a quarter of a turn to either side
-body      = "wheel"
-against   = "winder"
-stiffness = "{values.spring_rate:.15g} µN·m/rad"
-rest      = "{middle!r}°"
-
-[[torques]]                          # of the train
-body  = "stop_wheel"
-value = "{values.train:.15g} µN·m"
-
-{contacts}
-"""
-
-CONTACTS = (("stop_wheel.TEETH", "stop_lever.PALLETS"), ("eccentric.circle", "stop_lever.FORK"))
-
-
+@dataclass(frozen=True)
 class _Plastic:
     """The law of the remontoir's own contacts: dry, without rebound."""
 
-    def __init__(self, friction: float) -> None:
-        self.friction, self.restitution = friction, 0.0
+    friction: float
+    restitution: float = 0.0
 
 
 def scene_text(values: Remontoir) -> str:
     """The text of scene.toml: the lever as by itself, a tooth of the stop wheel on the upper pallet."""
     wheel = wheel_angle(swiss(values))
-    own = OWN.format(
-        values=values,
-        disc=polar(values.eccentricity, START - wheel),
-        stop_x=-values.arm - centre_distance(values),
-        stop_wheel=half_span(values) - 2.0 * CLEAR,
-        lever_x=-values.arm,
-        stop_lever=lever_at(values, START),
-        ratio=-values.stop_teeth,
-        torque=-values.torque,
-        share=100.0 * values.spring_rate * 0.5 * math.pi / values.torque,
-        middle=wheel + middle(values),
-        contacts=contact_tables(_Plastic(values.stop_friction), *CONTACTS),
+    share = 100.0 * values.spring_rate * 0.5 * math.pi / values.torque
+    return toml.scene(
+        toml.head(values, WORDS, "Remontoir before a Swiss lever"),
+        lever.parts(values),
+        toml.table(
+            *("[bodies.eccentric]", "on the escape wheel", 8),
+            on="wheel",
+            motion="fixed",
+            circle=f"{values.disc:.15g} mm",
+            position=toml.at(*polar(values.eccentricity, START - wheel)),
+        ),
+        toml.table(
+            *("[bodies.winder]", "holds the outer end of the spring; on the axis of the escape wheel", 8),
+            polygon=WINDER,
+            position=toml.ORIGIN,
+            inertia=f"{values.winder_inertia:.15g} mg·cm²",
+        ),
+        toml.body(
+            *("stop_wheel", "stop_wheel", "TEETH"),
+            "turns counter-clockwise, by half a pitch for half a turn of the winder",
+            pivot=toml.ORIGIN,
+            position=toml.at(-values.arm - centre_distance(values), 0),
+            angle=toml.Noted(f"{half_span(values) - 2.0 * CLEAR:.15g}°", "a tooth a few nanometres off the upper pallet", 6),
+            inertia=toml.Noted(f"{values.stop_wheel_inertia:.15g} mg·cm²", "with the train as felt here", 6),
+        ),
+        toml.body(
+            *("stop_lever", "stop_lever", "PALLETS FORK"),
+            pivot=toml.ORIGIN,
+            position=toml.at(-values.arm, 0),
+            angle=f"{lever_at(values, START)!r}°",
+            inertia=f"{values.stop_lever_inertia:.15g} mg·cm²",
+        ),
+        toml.table("[[gears]]", between=("stop_wheel", "winder"), ratio=-values.stop_teeth),
+        toml.table(
+            *("[[torques]]", "the remontoir's spring, wound far: so much in the middle between two windings ..."),
+            body="wheel",
+            against="winder",
+            value=f"{-values.torque:.15g} µN·m",
+        ),
+        toml.table(
+            *("[[springs]]", f"... and {share:.3g} % more or less at their ends, a quarter of a turn to either side"),
+            body="wheel",
+            against="winder",
+            stiffness=f"{values.spring_rate:.15g} µN·m/rad",
+            rest=f"{wheel + middle(values)!r}°",
+        ),
+        toml.torque("stop_wheel", f"{values.train:.15g} µN·m", "of the train"),
+        toml.contacts(
+            _Plastic(values.stop_friction), "stop_wheel.TEETH stop_lever.PALLETS", "eccentric.circle stop_lever.FORK"
+        ),
+        lever.rest(values),
     )
-    return HEAD.format(dimensions=told(values)) + parts(values) + own + rest(values)
 
-
-# What makes a remontoir before a Swiss lever a design?
 
 SURE, SPARE = 1.5, 1.1  # times what lets a tooth go, and times what winds the spring
 

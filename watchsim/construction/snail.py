@@ -1,4 +1,4 @@
-"""The snail as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Snail of a striking train with its rack: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -6,15 +6,12 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from watchsim.construction.design import STEEL, Conflict, Design, contact_tables, dim, leaf_text, told
-from watchsim.construction.outline import along, angle_of, arc_between, circle, polar, rounded, turned
+from watchsim.construction import scene_builder as toml
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim
+from watchsim.construction.outline import along, angle_of, arc_between, circle, polar, polygon, turned
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Edge, Line, Point
-
-# Which numbers does the designer of a snail and its rack choose?
-
-CHOSEN = "chosen for this design"
 
 
 @dataclass(frozen=True)
@@ -91,7 +88,7 @@ def fall_time(values: Snail, fallen: float) -> float:
 def leaf_stiffness(values: Snail) -> float:
     """N·m/rad, on the rack."""
     length, width, thick, arm = values.leaf_length, values.leaf_width, values.leaf_thickness, values.leaf_arm
-    return STEEL * width * thick**3 / (4.0 * length**3) * arm**2 * 1e-9
+    return toml.STEEL * width * thick**3 / (4.0 * length**3) * arm**2 * 1e-9
 
 
 def rise_time(values: Snail) -> float:
@@ -122,8 +119,6 @@ def _beside(values: Snail, step: int) -> float:
     return math.degrees(math.asin(values.pin_radius / math.hypot(*pin(values, step))))
 
 
-# What are the outlines of a snail, its rack and the stop of the rack?
-
 BORE = 0.3  # of the lowest step's radius
 BAR = 1.5  # half the width of the tail in radii of its pin
 RACK, DEPTH, SPOKE = 0.9, 0.04, 25.0  # radius of the rack and depth of its teeth by the tail; degrees of the rack's first tooth
@@ -149,9 +144,8 @@ def rack(values: Snail) -> list[Loop]:
     half = BAR * values.pin_radius
     way = 180.0 - gathered(values)
     bar = [turned(corner, way) for corner in ((0.0, -half), (values.tail, -half), (values.tail, half), (0.0, half))]
-    tail = rounded([(*corner, 0.0) for corner in bar])
     pin = circle("PIN", polar(values.tail, way), values.pin_radius)
-    return [pin, Loop(tuple(tail), "TAIL"), _teeth(values), circle("FOOT", (0.0, 0.0), 2.0 * half)]
+    return [pin, polygon("TAIL", bar), _teeth(values), circle("FOOT", (0.0, 0.0), 2.0 * half)]
 
 
 def stop(values: Snail) -> list[Loop]:
@@ -171,62 +165,11 @@ def _teeth(values: Snail) -> Loop:
     inside, end = (1.0 - 4.0 * DEPTH) * outer, SPOKE - count * values.tooth
     narrow = SPOKE - math.degrees(3.0 * hub / inside)
     corners += [polar(inside, end), polar(inside, max(narrow, 0.5 * (SPOKE + end))), polar(hub, SPOKE - 45.0)]
-    return Loop(tuple(rounded([(*corner, 0.0) for corner in reversed(corners)])), "RACK")
+    return polygon("RACK", corners[::-1])
 
-
-# What does the scene of a snail and its rack say?
 
 SUDDEN = 1e-6  # s: over which the rack is let go
 END = 0.58  # of the last hour: the rack lies on the lowest step
-
-TEXT = """\
-# The snail of a striking train with its rack, drawn to these dimensions:
-{dimensions}
-
-[scene]
-title  = "Snail of {values.steps} steps with its rack"
-schema = 1
-
-[bodies.snail]                       # turns counter-clockwise, evenly, by a step in each hour
-drawing  = "snail.dxf"
-layers   = ["STEPS"]
-pivot    = ["0 mm", "0 mm"]
-angle    = "{angle!r}°"
-motion   = "driven"
-velocity = "{speed!r} °/s"
-
-[bodies.rack]                        # falls counter-clockwise, by a tooth for each blow
-drawing  = "rack.dxf"
-layers   = ["PIN", "TAIL"]
-pivot    = ["0 mm", "0 mm"]
-position = ["{values.distance!r} mm", "0 mm"]
-inertia  = "{values.rack_inertia:.15g} mg·cm²"
-
-[bodies.stop]                        # of the rack that has been gathered up
-drawing  = "stop.dxf"
-layers   = ["STOP"]
-pivot    = ["0 mm", "0 mm"]
-position = ["{values.distance!r} mm", "0 mm"]
-motion   = "fixed"
-
-[[springs]]                          # a leaf
-body    = "rack"
-leaf    = {{ {leaf} }}
-preload = "{preload!r} µN·m"
-
-[[torques]]                          # the striking train gathers the rack up, and lets it go once in each hour
-body   = "rack"
-over   = "time"
-table  = [{table}]
-period = "{values.hour!r} s"
-
-{contacts}
-[run]
-duration  = "{duration!r} s"
-tolerance = 1e-9
-"""
-
-CONTACTS = (("rack.PIN", "snail.STEPS"), ("rack.TAIL", "stop.STOP"))
 
 
 def scene_text(values: Snail) -> str:
@@ -234,22 +177,49 @@ def scene_text(values: Snail) -> str:
     free, taken = values.hour * FALLS, values.hour * LIFTED
     times = (free, free + SUDDEN, taken, taken + EASE * values.hour)
     torques = (-values.lifting, 0.0, 0.0, -values.lifting)
-    rows = [f'["{time:.15g} s", "{torque:.15g} mN·m"]' for time, torque in zip(times, torques, strict=True)]
+    rows = [(f"{time:.15g} s", f"{torque:.15g} mN·m") for time, torque in zip(times, torques, strict=True)]
     pitch = 360.0 / values.steps
-    return TEXT.format(
-        dimensions=told(values),
-        values=values,
-        contacts=contact_tables(values, *CONTACTS),
-        angle=-0.5 * pitch,
-        speed=pitch / values.hour,
-        leaf=leaf_text(values),
-        preload=values.leaf_force * values.leaf_arm,  # mN·mm = µN·m
-        table=", ".join(rows),
-        duration=round((values.steps - 1 + END) * values.hour, 9),
+    return toml.scene(
+        toml.head(
+            *(values, "The snail of a striking train with its rack, drawn to these dimensions:"),
+            f"Snail of {values.steps} steps with its rack",
+        ),
+        toml.body(
+            *("snail", "snail", "STEPS", "turns counter-clockwise, evenly, by a step in each hour"),
+            pivot=toml.ORIGIN,
+            angle=f"{-0.5 * pitch!r}°",
+            motion="driven",
+            velocity=f"{pitch / values.hour!r} °/s",
+        ),
+        toml.body(
+            *("rack", "rack", "PIN TAIL", "falls counter-clockwise, by a tooth for each blow"),
+            pivot=toml.ORIGIN,
+            position=toml.at(values.distance, 0),
+            inertia=f"{values.rack_inertia:.15g} mg·cm²",
+        ),
+        toml.body(
+            *("stop", "stop", "STOP", "of the rack that has been gathered up"),
+            pivot=toml.ORIGIN,
+            position=toml.at(values.distance, 0),
+            motion="fixed",
+        ),
+        toml.table(
+            *("[[springs]]", "a leaf"),
+            body="rack",
+            leaf=toml.leaf(values),
+            preload=f"{values.leaf_force * values.leaf_arm!r} µN·m",  # mN·mm = µN·m
+        ),
+        toml.table(
+            *("[[torques]]", "the striking train gathers the rack up, and lets it go once in each hour"),
+            body="rack",
+            over="time",
+            table=rows,
+            period=f"{values.hour!r} s",
+        ),
+        toml.contacts(values, "rack.PIN snail.STEPS", "rack.TAIL stop.STOP"),
+        toml.run(f"{round((values.steps - 1 + END) * values.hour, 9)!r} s"),
     )
 
-
-# What makes the snail with its rack a design?
 
 WIDEST = 140.0  # degrees of the tail to the line of centres, gathered up
 QUIET = 0.25  # of the time on a step that the rack may take to fall there

@@ -1,34 +1,87 @@
-"""Which sheets does a Swiss lever escapement need?"""
+"""The Swiss lever escapement: its dimensions, the draughtsman's numbers that follow, what does not go together, its scene."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
-from dataclasses import replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from types import MappingProxyType
+from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from watchsim.construction.design import Conflict, Design, Impossible, contact_tables, told
+from watchsim.construction import scene_builder as toml
+from watchsim.construction.design import CHOSEN, Conflict, Design, Impossible, dim
+from watchsim.construction.lever_parts import edge_half
 from watchsim.construction.outline import along, angle_of, polar, turned
 from watchsim.construction.swiss_lever_outlines import (
     INERTIA,
+    MOUTH,
     Slot,
     Swiss,
-    SwissLever,
     banking,
+    behind,
     crescent_needed,
-    drop_after_recoil,
-    gap_to_slot,
     lever,
-    lift_on_tooth,
-    recoil,
     roller,
+    toe_heel_back,
     tooth_gap,
     wheel,
     wheel_of,
 )
 from watchsim.drawing.write import Sheet
+from watchsim.geometry.primitives import Edge, Line, Point
+
+# Which numbers does the designer of a Swiss lever escapement choose?
+#
+# Angles of lock, run, lift and draw are at the lever's pivot and locking corner, of tooth and drop at the wheel's, lift angle
+# and
+# horn at the balance's. Playtner: H. R. Playtner, An Analysis of the Lever Escapement (1910).
+
+PLAYTNER, USUAL = "Playtner 1910", "usual in wristwatches"
+ESTIMATE = "estimate: not published for a watch"
+
+
+@dataclass(frozen=True)
+class SwissLever:
+    """The dimensions with their defaults, each in the unit that its declaration names."""
+
+    teeth: int = dim(15, "", 9, 30, "teeth of the escape wheel", USUAL)
+    embraced: float = dim(2.5, "", 1.5, 7.5, "tooth spaces between the two lockings, a whole number and a half", PLAYTNER)
+    tip_radius: float = dim(2.4, "mm", 0.5, 20.0, "escape wheel, to the toes of its teeth", CHOSEN)
+    tooth_width: float = dim(4.5, "°", 1.5, 8.0, "of a club tooth from toe to heel, at the wheel's centre", PLAYTNER)
+    undercut: float = dim(24.0, "°", 16.0, 32.0, "of a tooth's locking face, from the radius", f"{PLAYTNER}: 20° to 28°")
+    lock: float = dim(1.5, "°", 0.1, 4.0, "lever, from the drop of a tooth on the locking face to unlocked", PLAYTNER)
+    run: float = dim(0.5, "°", 0.05, 3.0, "lever, from the drop to the banking; lock and run are the total lock", USUAL)
+    lift_on_stone: float = dim(4.8, "°", 1.0, 9.0, "lever, a toe driving the impulse face of the entry stone", USUAL)
+    lift_on_tooth: float = dim(2.7, "°", 0.3, 6.0, "lever, a tooth's impulse face driving the entry stone", USUAL)
+    drop_inside: float = dim(1.2, "°", 0.2, 4.0, "wheel, free from the entry stone's let-off to the exit's lock", USUAL)
+    drop_outside: float = dim(1.2, "°", 0.2, 4.0, "wheel, free from the exit stone's let-off to the entry's lock", USUAL)
+    draw: float = dim(13.0, "°", 5.0, 25.0, "of the locking faces with the lever on its bank", f"{PLAYTNER}: 12°")
+    lever_to_balance: float = dim(4.36, "mm", 1.0, 40.0, "centre distance of lever and balance", CHOSEN)
+    lift_angle: float = dim(51.2, "°", 25.0, 75.0, "balance, while the jewel is in the fork", "calibre tables: 44° to 54°")
+    jewel_width: float = dim(0.32, "mm", 0.05, 4.0, "diameter of the impulse jewel before its flat is ground", CHOSEN)
+    jewel_ground: float = dim(3.0 / 7.0, "", 0.2, 0.5, "of its diameter ground away, to make it D-shaped", PLAYTNER)
+    shake: float = dim(0.02, "mm", 0.002, 0.3, "by which the slot of the fork is wider than the jewel", f"{PLAYTNER}: ¼°")
+    horn_clearance: float = dim(0.042, "mm", 0.005, 0.5, "between jewel and horn, the lever on its bank", CHOSEN)
+    horn_end: float = dim(62.0, "°", 35.0, 80.0, "how far a horn reaches round the balance, the lever on its bank", CHOSEN)
+    guard_freedom: float = dim(0.765, "°", 0.1, 2.5, "lever, from its bank until the dart meets the safety roller", CHOSEN)
+    safety_ratio: float = dim(
+        0.66, "", 0.5, 0.75, "radius of the safety roller by that of the jewel's flat", f"{PLAYTNER}: 4/7 to 2/3"
+    )
+    crescent: float = dim(22.0, "°", 12.0, 40.0, "half opening of the crescent, at the balance's centre", CHOSEN)
+    wheel_inertia: float = dim(0.05, "mg·cm²", 1e-4, 100.0, "escape wheel with the train as felt there", ESTIMATE)
+    lever_inertia: float = dim(0.03, "mg·cm²", 1e-4, 100.0, "lever with stones and dart", ESTIMATE)
+    balance_inertia: float = dim(12.0, "mg·cm²", 0.1, 1e4, "balance with roller and hairspring", ESTIMATE)
+    frequency: float = dim(28800.0, "vph", 7200.0, 72000.0, "of the balance on its hairspring, in beats per hour", USUAL)
+    q_factor: float = dim(250.0, "", 20.0, 2000.0, "quality factor of the balance without the escapement", "often 200 to 300")
+    torque: float = dim(1.0, "µN·m", 1e-3, 1e3, "of the train on the escape wheel", ESTIMATE)
+    friction: float = dim(0.12, "", 0.0, 0.5, "coefficient of friction, in all contacts", "0.10 to 0.20, steel on oiled ruby")
+    restitution: float = dim(0.2, "", 0.0, 0.9, "coefficient of restitution, in all contacts", ESTIMATE)
+    start: float = dim(270.0, "°", 60.0, 300.0, "balance, from rest, where it is let go", CHOSEN)
+
 
 # Which of the draughtsman's numbers follow from the chosen dimensions?
 #
@@ -118,7 +171,171 @@ def dart_clearance(design: Swiss, freedom: float) -> float:
     return math.sqrt(away**2 + y**2 - 2.0 * away * y * math.cos(rests)) - reach
 
 
-# Which dimensions of a Swiss lever do not go together?
+# How is the lift shared between stone and tooth?
+
+
+def lift_on_tooth(design: Swiss, side: int) -> float:
+    """Lever angle (degrees) from where the stone's discharge corner crosses the circle of the toes to let-off.
+
+    The corner is rho from the lever's pivot, which is C from the wheel's centre: its distance from that one gives the angle
+    between the two directions at the pivot. ValueError where the corner never crosses.
+    """
+    corner = design.discharge_corner(side)
+    away, rho = design.lever_pivot[1], math.hypot(*corner)
+
+    def at(distance: float) -> float:
+        return math.degrees(math.acos((away**2 + rho**2 - distance**2) / (2.0 * away * rho)))
+
+    return at(design.heel_radius) - at(design.tip_radius)
+
+
+# How far is the impulse jewel from the wall of the slot that it comes to push?
+
+
+def gap_to_slot(design: Swiss, balance: float) -> float:
+    """mm from jewel to far wall, the lever on its entry bank, the balance at `balance` degrees; negative where they overlap.
+
+    The jewel comes from the left; the far wall is the slot's right one, which ends in the rounding of the mouth. Wall and
+    rounding are the outline of all that is within `rounding` of the half line x = centre below the rounding's centre, and
+    the jewel is convex, so that its least distance is to the wall, or to that centre.
+    """
+    rounding = MOUTH * design.lever_scale
+    centre = mouth_centre(design, rounding)
+    back = design.bank
+
+    def in_lever(point: Point) -> Point:
+        x, y = turned(point, balance)
+        return design.in_lever((x + design.balance_pivot[0], y + design.balance_pivot[1]), back)
+
+    right = max((in_lever(point) for point in _rightmost(design, balance - back)), key=lambda point: point[0])
+    if right[1] <= centre[1]:
+        return design.slot_width / 2.0 - right[0]
+    x, y = design.in_movement(centre, back)
+    seen = turned((x - design.balance_pivot[0], y - design.balance_pivot[1]), -balance)
+    return _outside_jewel(design, seen) - rounding
+
+
+def mouth_centre(design: Swiss, rounding: float) -> Point:
+    """In the lever's frame: of the rounding between the right wall of the slot and the right horn (drawn with the lever on
+    the exit bank)."""
+    x = design.slot_width / 2.0 + rounding
+    bx, by = design.balance_from_bank(-1)
+    return (x, by - math.sqrt((design.horn_radius + rounding) ** 2 - (x - bx) ** 2))
+
+
+def _edges(design: Swiss) -> tuple[Point, Point]:
+    """Centres of the roundings of the jewel's left and right edge, in the balance's frame."""
+    height = design.pin_reach - design.pin_edge
+    half = edge_half(design.pin_reach, design.pin_centre, design.pin_radius, design.pin_edge)
+    return (-half, -height), (half, -height)
+
+
+def _rightmost(design: Swiss, angle: float) -> list[Point]:
+    """Points of the jewel (balance's frame) that may be farthest to the right once it is turned by `angle` degrees."""
+    left, right = _edges(design)
+    found = [polar(design.pin_edge, -angle, left), polar(design.pin_edge, -angle, right)]
+    round_side = polar(design.pin_radius, -angle, (0.0, -design.pin_centre))
+    return [*found, *([round_side] if _on_round(design, round_side) else [])]
+
+
+def _on_round(design: Swiss, point: Point) -> bool:
+    """Does the point, seen from the round side's centre, lie between the two roundings on the side of the balance?"""
+    (_, ey), cy = _edges(design)[1], -design.pin_centre
+    ex = _edges(design)[1][0]
+    limit = math.atan2(ey - cy, ex)
+    angle = math.atan2(point[1] - cy, abs(point[0]))
+    return angle >= limit
+
+
+def _outside_jewel(design: Swiss, point: Point) -> float:
+    """Distance of a point outside from the jewel, both in the balance's frame; negative inside."""
+    x, y = abs(point[0]), point[1]
+    ex, ey = _edges(design)[1]
+    if _on_round(design, (x, y)):
+        return math.hypot(x, y + design.pin_centre) - design.pin_radius
+    if x <= ex:
+        return -design.pin_reach - y
+    return math.hypot(x - ex, y - ey) - design.pin_edge
+
+
+# How much of the drop is left once unlocking has drawn the wheel back?
+#
+# A tooth has dropped on one stone, the tooth before it has just left the other. While the lever unlocks, the locking face
+# pushes
+# the wheel back (the recoil that its draw asks for), and the other stone comes in behind the tooth that it let off. What the
+# wheel could still be turned back before the two meet is what is left of the drop; where nothing is left, the lever cannot
+# unlock.
+
+PARTS = 40  # of an edge
+STEPS = 8  # of the lever, from the bank to unlocked
+
+
+def drop_after_recoil(design: Swiss, side: int) -> float:
+    """Degrees of the wheel, while the entry (+1) or exit (-1) stone unlocks; negative where the other stone is in the way.
+
+    The least over all places of the lever, between every point of that stone and the tooth at the same radius. Infinite where
+    the stone stays outside the wheel.
+    """
+    tooth = _radii_and_angles(_back_of_tooth(design))
+    stone = _points(_let_off_faces(design, -side))
+    places = np.linspace(design.bank, design.unlocked, STEPS + 1)
+    return min(_left(design, side, float(lever), tooth, stone) for lever in places)
+
+
+def recoil(design: Swiss, side: int) -> float:
+    """Degrees by which the wheel is turned back from the bank until it is unlocked, teeth sliding on that stone."""
+    return _locked_toe(design, side, design.unlocked) - _locked_toe(design, side, design.bank)
+
+
+def _left(
+    design: Swiss, side: int, lever: float, tooth: tuple[NDArray[np.float64], NDArray[np.float64]], stone: Sequence[Point]
+) -> float:
+    pitch = 360.0 / design.teeth
+    spaces = 2.0 * design.half_span / pitch
+    let_off = _locked_toe(design, side, lever) + (-math.ceil(spaces) if side > 0 else math.floor(spaces)) * pitch
+    placed = [design.in_movement(point, side * lever) for point in stone]
+    radii, angles = tooth
+    gaps = [
+        angle_of(point) - let_off - float(np.interp(math.hypot(*point), radii, angles))
+        for point in placed
+        if radii[0] <= math.hypot(*point) <= radii[-1]
+    ]
+    return min(gaps, default=math.inf)
+
+
+def _locked_toe(design: Swiss, side: int, lever: float) -> float:
+    """Polar angle in the movement of a toe on the locking face, the lever that many degrees to the stone's own side."""
+    corner = design.in_movement(design.locking_corner(side), side * lever)
+    direction = design.face_direction(side) + side * lever
+    middle = corner[0] * math.cos(math.radians(direction)) + corner[1] * math.sin(math.radians(direction))
+    # At `unlocked` the corner is on the circle, but for rounding.
+    reach = -middle + math.sqrt(max(0.0, middle**2 - math.hypot(*corner) ** 2 + design.tip_radius**2))
+    return angle_of(along(corner, direction, reach))
+
+
+def _back_of_tooth(design: Swiss) -> list[Edge]:
+    _, heel, back = toe_heel_back(design)
+    lean, hollow, _ = behind(design, back)
+    return [Line(*heel, *back), *lean, hollow]
+
+
+def _let_off_faces(design: Swiss, side: int) -> list[Edge]:
+    """Impulse face, and the side of the stone beyond its discharge corner; in the lever's frame."""
+    slot = Slot(design, side)
+    return [Line(*slot.corner, *slot.end), Line(*slot.end, *slot.at(slot.exposed, slot.width))]
+
+
+def _points(edges: Sequence[Edge]) -> list[Point]:
+    return [edge.point(part / PARTS) for edge in edges for part in range(PARTS + 1)]
+
+
+def _radii_and_angles(edges: Sequence[Edge]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """In the order of the radii; angles in degrees, from the toe."""
+    points = _points(edges)
+    radii, angles = np.array([math.hypot(*point) for point in points]), np.array([angle_of(point) for point in points])
+    order = np.argsort(radii, kind="stable")
+    return radii[order], angles[order]
+
 
 LEAST_STONE, LEAST_GAP, LEAST_LIFT = 0.8, 1.0, 0.2  # degrees
 SPANS = (15.0, 55.0)  # degrees, half of what the pallets embrace
@@ -222,120 +439,73 @@ def _horn_arc(design: Swiss) -> float:
     return (angle_of(end, centre) - angle_of(mouth, centre) + 180.0) % 360.0 - 180.0
 
 
-# What does the scene of a Swiss lever say?
-
 CLEAR = 1e-4  # degrees by which lever and wheel stand off what they rest on
-BODIES = ("wheel", "lever", "balance", "banking")
-NO_MORE: Mapping[str, str] = MappingProxyType({})
-
-HEAD = """\
-# {title}, drawn to these dimensions:
-{dimensions}
-
-[scene]
-title  = "Swiss lever, {values.frequency:.0f} vph, {values.teeth} teeth"
-schema = 1
-
-"""
-
-PARTS = """\
-[bodies.wheel]                       # turns clockwise
-drawing  = "escape_wheel.dxf"
-layers   = ["TEETH"]
-pivot    = "PIVOT"
-position = ["0 mm", "{wheel_y} mm"]
-angle    = "{wheel_angle:.7f}°"      # a tooth a few nanometres off the locking face of the entry stone
-inertia  = "{values.wheel_inertia:.15g} mg·cm²"      # with the train as felt here
-{more[wheel]}
-[bodies.lever]
-drawing  = "lever.dxf"
-layers   = ["STONES", "FORK", "DART", "ARMS"]
-pivot    = "PIVOT"
-position = ["0 mm", "{lever_y} mm"]
-angle    = "{lever_angle:.15g}°"     # a few nanometres off the bank
-inertia  = "{values.lever_inertia:.15g} mg·cm²"
-{more[lever]}
-[bodies.balance]                     # hangs at the end of a swing, the jewel far outside the fork
-drawing  = "roller.dxf"
-layers   = ["TABLE", "SAFETY", "PIN"]
-draw     = ["RIM"]
-pivot    = "PIVOT"
-position = ["0 mm", "{balance_y} mm"]
-angle    = "{start:.15g}°"
-inertia  = "{values.balance_inertia:.15g} mg·cm²"
-{more[balance]}
-[bodies.banking]
-drawing  = "banking.dxf"
-layers   = ["PINS"]
-pivot    = "PIVOT"
-position = ["0 mm", "{wheel_y} mm"]
-motion   = "fixed"
-{more[banking]}
-[[springs]]
-body      = "balance"
-frequency = "{values.frequency:.15g} vph"
-draw      = {hairspring}
-
-"""
-
-DRIVE = """\
-[[torques]]
-body  = "wheel"
-value = "{torque:.15g} µN·m"
-
-"""
-
-REST = """\
-[[damping]]
-body     = "balance"
-q_factor = {values.q_factor!r}
-
-{contacts}
-[run]
-duration  = "10 s"
-tolerance = {tolerance}
-
-[timegrapher]
-lift_angle = "{values.lift_angle:.15g}°"
-"""
-
-CONTACTS: tuple[tuple[str, str] | tuple[str, str, str], ...] = (
-    ("wheel.TEETH", "lever.STONES"),
-    ("lever.FORK", "balance.PIN"),
-    ("lever.DART", "balance.SAFETY", "safety action: never meets in normal running"),
-    ("lever.ARMS", "banking.PINS"),
-)
+NO_MORE: Mapping[str, Mapping[str, Any]] = MappingProxyType({})
 
 
 def scene_text(values: SwissLever) -> str:
     """The text of scene.toml: lever on its entry bank, a tooth on the entry stone, the balance about to be let go."""
-    head = HEAD.format(title="A Swiss lever escapement", dimensions=told(values), values=values)
-    return head + parts(values) + DRIVE.format(torque=-values.torque) + rest(values)
-
-
-def parts(values: SwissLever, below: float = 0.0, more: Mapping[str, str] = NO_MORE) -> str:
-    """Bodies and hairspring: the wheel `below` (mm) the origin, with `more` lines for each body."""
-    design = swiss(values)
-    return PARTS.format(
-        values=values,
-        more={name: more.get(name, "") for name in BODIES},
-        wheel_angle=wheel_angle(design),
-        wheel_y=_mm(-below),
-        lever_y=_mm(design.lever_pivot[1] - below),
-        lever_angle=round(design.bank - CLEAR, 10),
-        balance_y=_mm(design.balance_pivot[1] - below),
-        start=-values.start,
-        hairspring=wheel_of(design, values.balance_inertia).hairspring(90.0),
+    words = "A Swiss lever escapement, drawn to these dimensions:"
+    return toml.scene(
+        toml.head(values, words, f"Swiss lever, {values.frequency:.0f} vph, {values.teeth} teeth"),
+        parts(values),
+        toml.torque("wheel", f"{-values.torque:.15g} µN·m"),
+        rest(values),
     )
 
 
-def rest(values: SwissLever, tolerance: str = "1e-9") -> str:
-    """Damping, contacts, and how it is run."""
-    return REST.format(values=values, contacts=contact_tables(values, *CONTACTS), tolerance=tolerance)
+def parts(values: SwissLever, below: float = 0.0, more: Mapping[str, Mapping[str, Any]] = NO_MORE) -> str:
+    """Bodies and hairspring: the wheel `below` (mm) the origin, with `more` entries for each body."""
+    design = swiss(values)
+    wheel, lever, balance = (-below, design.lever_pivot[1] - below, design.balance_pivot[1] - below)
+    return toml.scene(
+        toml.body(
+            *("wheel", "escape_wheel", "TEETH", "turns clockwise"),
+            position=_above(wheel),
+            angle=toml.Noted(
+                f"{wheel_angle(design):.7f}°", "a tooth a few nanometres off the locking face of the entry stone", 6
+            ),
+            inertia=toml.Noted(f"{values.wheel_inertia:.15g} mg·cm²", "with the train as felt here", 6),
+            **more.get("wheel", {}),
+        ),
+        toml.body(
+            *("lever", "lever", "STONES FORK DART ARMS"),
+            position=_above(lever),
+            angle=toml.Noted(f"{round(design.bank - CLEAR, 10):.15g}°", "a few nanometres off the bank", 5),
+            inertia=f"{values.lever_inertia:.15g} mg·cm²",
+            **more.get("lever", {}),
+        ),
+        toml.body(
+            *("balance", "roller", "TABLE SAFETY PIN", "hangs at the end of a swing, the jewel far outside the fork"),
+            draw="RIM",
+            position=_above(balance),
+            angle=f"{-values.start:.15g}°",
+            inertia=f"{values.balance_inertia:.15g} mg·cm²",
+            **more.get("balance", {}),
+        ),
+        toml.body("banking", "banking", "PINS", position=_above(wheel), motion="fixed", **more.get("banking", {})),
+        toml.hairspring(values.frequency, wheel_of(design, values.balance_inertia).hairspring(90.0)),
+    )
 
 
-def _mm(length: float) -> str:
-    return repr(length + 0.0).removesuffix(".0")
+def rest(values: Any, pallets: str = "wheel.TEETH lever.STONES", tolerance: str = "1e-9") -> str:
+    """Damping, contacts, and how it is run; `pallets` is the contact of wheel and lever."""
+    return toml.scene(
+        toml.q_factor("balance", values.q_factor),
+        toml.contacts(
+            values,
+            pallets,
+            "lever.FORK balance.PIN",
+            "lever.DART balance.SAFETY: safety action: never meets in normal running",
+            "lever.ARMS banking.PINS",
+        ),
+        toml.run("10 s", tolerance),
+        toml.timegrapher(f"{values.lift_angle:.15g}°"),
+    )
+
+
+def _above(height: float) -> tuple[str, str]:
+    return ("0 mm", f"{repr(height + 0.0).removesuffix('.0')} mm")
 
 
 def wheel_angle(design: Swiss) -> float:
@@ -351,9 +521,6 @@ def wheel_angle(design: Swiss) -> float:
     return (toe + pitch / 2.0) % pitch - pitch / 2.0
 
 
-# Which sheets does a Swiss lever escapement need?
-
-
 def sheets(swiss: Swiss, inertia: float = INERTIA) -> dict[str, Sheet]:
     """File name without ending -> the part; the rim is that of a balance of `inertia` (mg·cm²).
 
@@ -361,9 +528,6 @@ def sheets(swiss: Swiss, inertia: float = INERTIA) -> dict[str, Sheet]:
     """
     parts = {"escape_wheel": wheel(swiss), "lever": lever(swiss), "roller": roller(swiss, inertia), "banking": banking(swiss)}
     return {name: Sheet(tuple(loops)) for name, loops in parts.items()}
-
-
-# What makes the Swiss lever a design?
 
 
 def draw(values: SwissLever) -> dict[str, Sheet]:

@@ -1,79 +1,29 @@
-"""The swiss lever outlines as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Where do the points of a Swiss lever lie, and what are the outlines of its wheel, lever, roller and banking?"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-import numpy as np
-from numpy.typing import NDArray
-
-from watchsim.construction.design import dim
+from watchsim.construction import lever_parts
+from watchsim.construction.lever_parts import guard, impulse_pin, safety_roller
 from watchsim.construction.outline import (
     along,
     angle_of,
     arc_between,
     arc_of_radius,
+    around,
     circle,
     fillet,
-    fillet_chain,
+    filleted,
     polar,
+    rounded,
     turned,
 )
 from watchsim.construction.parts import Arms, BalanceWheel, balance_wheel
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Edge, Line, Point
-
-# Which numbers does the designer of a Swiss lever escapement choose?
-#
-# Angles of lock, run, lift and draw are at the lever's pivot and locking corner, of tooth and drop at the wheel's, lift angle
-# and
-# horn at the balance's. Playtner: H. R. Playtner, An Analysis of the Lever Escapement (1910).
-
-PLAYTNER, CHOSEN, USUAL = "Playtner 1910", "chosen for this design", "usual in wristwatches"
-ESTIMATE = "estimate: not published for a watch"
-
-
-@dataclass(frozen=True)
-class SwissLever:
-    """The dimensions with their defaults, each in the unit that its declaration names."""
-
-    teeth: int = dim(15, "", 9, 30, "teeth of the escape wheel", USUAL)
-    embraced: float = dim(2.5, "", 1.5, 7.5, "tooth spaces between the two lockings, a whole number and a half", PLAYTNER)
-    tip_radius: float = dim(2.4, "mm", 0.5, 20.0, "escape wheel, to the toes of its teeth", CHOSEN)
-    tooth_width: float = dim(4.5, "°", 1.5, 8.0, "of a club tooth from toe to heel, at the wheel's centre", PLAYTNER)
-    undercut: float = dim(24.0, "°", 16.0, 32.0, "of a tooth's locking face, from the radius", f"{PLAYTNER}: 20° to 28°")
-    lock: float = dim(1.5, "°", 0.1, 4.0, "lever, from the drop of a tooth on the locking face to unlocked", PLAYTNER)
-    run: float = dim(0.5, "°", 0.05, 3.0, "lever, from the drop to the banking; lock and run are the total lock", USUAL)
-    lift_on_stone: float = dim(4.8, "°", 1.0, 9.0, "lever, a toe driving the impulse face of the entry stone", USUAL)
-    lift_on_tooth: float = dim(2.7, "°", 0.3, 6.0, "lever, a tooth's impulse face driving the entry stone", USUAL)
-    drop_inside: float = dim(1.2, "°", 0.2, 4.0, "wheel, free from the entry stone's let-off to the exit's lock", USUAL)
-    drop_outside: float = dim(1.2, "°", 0.2, 4.0, "wheel, free from the exit stone's let-off to the entry's lock", USUAL)
-    draw: float = dim(13.0, "°", 5.0, 25.0, "of the locking faces with the lever on its bank", f"{PLAYTNER}: 12°")
-    lever_to_balance: float = dim(4.36, "mm", 1.0, 40.0, "centre distance of lever and balance", CHOSEN)
-    lift_angle: float = dim(51.2, "°", 25.0, 75.0, "balance, while the jewel is in the fork", "calibre tables: 44° to 54°")
-    jewel_width: float = dim(0.32, "mm", 0.05, 4.0, "diameter of the impulse jewel before its flat is ground", CHOSEN)
-    jewel_ground: float = dim(3.0 / 7.0, "", 0.2, 0.5, "of its diameter ground away, to make it D-shaped", PLAYTNER)
-    shake: float = dim(0.02, "mm", 0.002, 0.3, "by which the slot of the fork is wider than the jewel", f"{PLAYTNER}: ¼°")
-    horn_clearance: float = dim(0.042, "mm", 0.005, 0.5, "between jewel and horn, the lever on its bank", CHOSEN)
-    horn_end: float = dim(62.0, "°", 35.0, 80.0, "how far a horn reaches round the balance, the lever on its bank", CHOSEN)
-    guard_freedom: float = dim(0.765, "°", 0.1, 2.5, "lever, from its bank until the dart meets the safety roller", CHOSEN)
-    safety_ratio: float = dim(
-        0.66, "", 0.5, 0.75, "radius of the safety roller by that of the jewel's flat", f"{PLAYTNER}: 4/7 to 2/3"
-    )
-    crescent: float = dim(22.0, "°", 12.0, 40.0, "half opening of the crescent, at the balance's centre", CHOSEN)
-    wheel_inertia: float = dim(0.05, "mg·cm²", 1e-4, 100.0, "escape wheel with the train as felt there", ESTIMATE)
-    lever_inertia: float = dim(0.03, "mg·cm²", 1e-4, 100.0, "lever with stones and dart", ESTIMATE)
-    balance_inertia: float = dim(12.0, "mg·cm²", 0.1, 1e4, "balance with roller and hairspring", ESTIMATE)
-    frequency: float = dim(28800.0, "vph", 7200.0, 72000.0, "of the balance on its hairspring, in beats per hour", USUAL)
-    q_factor: float = dim(250.0, "", 20.0, 2000.0, "quality factor of the balance without the escapement", "often 200 to 300")
-    torque: float = dim(1.0, "µN·m", 1e-3, 1e3, "of the train on the escape wheel", ESTIMATE)
-    friction: float = dim(0.12, "", 0.0, 0.5, "coefficient of friction, in all contacts", "0.10 to 0.20, steel on oiled ruby")
-    restitution: float = dim(0.2, "", 0.0, 0.9, "coefficient of restitution, in all contacts", ESTIMATE)
-    start: float = dim(270.0, "°", 60.0, 300.0, "balance, from rest, where it is let go", CHOSEN)
-
 
 # Which points of a Swiss lever follow from its numbers?
 #
@@ -239,9 +189,7 @@ class Swiss:
     @property
     def horn_radius(self) -> float:
         """Of the horns about the balance's centre: past the farthest point of the pin's edge."""
-        height = self.pin_reach - self.pin_edge
-        half = math.sqrt((self.pin_radius - self.pin_edge) ** 2 - (height - self.pin_centre) ** 2)
-        return math.hypot(half, height) + self.pin_edge + self.horn_clearance
+        return lever_parts.horn_radius(self.pin_reach, self.pin_centre, self.pin_radius, self.pin_edge, self.horn_clearance)
 
     @property
     def dart_centre(self) -> float:
@@ -250,27 +198,9 @@ class Swiss:
         return y - math.sqrt((self.safety_radius + self.dart_clearance + self.dart_tip) ** 2 - x * x)
 
 
-# How is the lift shared between stone and tooth?
-
-
-def lift_on_tooth(design: Swiss, side: int) -> float:
-    """Lever angle (degrees) from where the stone's discharge corner crosses the circle of the toes to let-off.
-
-    The corner is rho from the lever's pivot, which is C from the wheel's centre: its distance from that one gives the angle
-    between the two directions at the pivot. ValueError where the corner never crosses.
-    """
-    corner = design.discharge_corner(side)
-    away, rho = design.lever_pivot[1], math.hypot(*corner)
-
-    def at(distance: float) -> float:
-        return math.degrees(math.acos((away**2 + rho**2 - distance**2) / (2.0 * away * rho)))
-
-    return at(design.heel_radius) - at(design.tip_radius)
-
-
 # How wide must the crescent be for the dart to pass through it?
 
-STEPS_SWISS_LEVER_GUARD = 60
+GUARD_STEPS = 60
 
 
 def crescent_needed(design: Swiss) -> float:
@@ -280,8 +210,8 @@ def crescent_needed(design: Swiss) -> float:
     """
     play = math.degrees((design.slot_width - 2.0 * design.pin_radius) / design.pin_reach)
     farthest = 0.0
-    for i in range(STEPS_SWISS_LEVER_GUARD + 1):
-        lever = design.bank * i / STEPS_SWISS_LEVER_GUARD
+    for i in range(GUARD_STEPS + 1):
+        lever = design.bank * i / GUARD_STEPS
         x, y = _dart(design, lever)
         distance = math.hypot(x, y)
         if distance < design.safety_radius + design.dart_tip:
@@ -303,77 +233,6 @@ def _jewel(design: Swiss, lever: float) -> float:
     return math.degrees(math.asin(min(1.0, ratio * math.sin(a)))) - lever
 
 
-# How far is the impulse jewel from the wall of the slot that it comes to push?
-
-MOUTH = 0.02  # mm at the first design's size: rounding between horn and slot
-
-
-def gap_to_slot(design: Swiss, balance: float) -> float:
-    """mm from jewel to far wall, the lever on its entry bank, the balance at `balance` degrees; negative where they overlap.
-
-    The jewel comes from the left; the far wall is the slot's right one, which ends in the rounding of the mouth. Wall and
-    rounding are the outline of all that is within `rounding` of the half line x = centre below the rounding's centre, and
-    the jewel is convex, so that its least distance is to the wall, or to that centre.
-    """
-    rounding = MOUTH * design.lever_scale
-    centre = mouth_centre(design, rounding)
-    back = design.bank
-
-    def in_lever(point: Point) -> Point:
-        x, y = turned(point, balance)
-        return design.in_lever((x + design.balance_pivot[0], y + design.balance_pivot[1]), back)
-
-    right = max((in_lever(point) for point in _rightmost(design, balance - back)), key=lambda point: point[0])
-    if right[1] <= centre[1]:
-        return design.slot_width / 2.0 - right[0]
-    x, y = design.in_movement(centre, back)
-    seen = turned((x - design.balance_pivot[0], y - design.balance_pivot[1]), -balance)
-    return _outside_jewel(design, seen) - rounding
-
-
-def mouth_centre(design: Swiss, rounding: float) -> Point:
-    """In the lever's frame: of the rounding between the right wall of the slot and the right horn (drawn with the lever on
-    the exit bank)."""
-    x = design.slot_width / 2.0 + rounding
-    bx, by = design.balance_from_bank(-1)
-    return (x, by - math.sqrt((design.horn_radius + rounding) ** 2 - (x - bx) ** 2))
-
-
-def _edges(design: Swiss) -> tuple[Point, Point]:
-    """Centres of the roundings of the jewel's left and right edge, in the balance's frame."""
-    height = design.pin_reach - design.pin_edge
-    half = math.sqrt((design.pin_radius - design.pin_edge) ** 2 - (height - design.pin_centre) ** 2)
-    return (-half, -height), (half, -height)
-
-
-def _rightmost(design: Swiss, angle: float) -> list[Point]:
-    """Points of the jewel (balance's frame) that may be farthest to the right once it is turned by `angle` degrees."""
-    left, right = _edges(design)
-    found = [polar(design.pin_edge, -angle, left), polar(design.pin_edge, -angle, right)]
-    round_side = polar(design.pin_radius, -angle, (0.0, -design.pin_centre))
-    return [*found, *([round_side] if _on_round(design, round_side) else [])]
-
-
-def _on_round(design: Swiss, point: Point) -> bool:
-    """Does the point, seen from the round side's centre, lie between the two roundings on the side of the balance?"""
-    (_, ey), cy = _edges(design)[1], -design.pin_centre
-    ex = _edges(design)[1][0]
-    limit = math.atan2(ey - cy, ex)
-    angle = math.atan2(point[1] - cy, abs(point[0]))
-    return angle >= limit
-
-
-def _outside_jewel(design: Swiss, point: Point) -> float:
-    """Distance of a point outside from the jewel, both in the balance's frame; negative inside."""
-    x, y = abs(point[0]), point[1]
-    ex, ey = _edges(design)[1]
-    if _on_round(design, (x, y)):
-        return math.hypot(x, y + design.pin_centre) - design.pin_radius
-    if x <= ex:
-        return -design.pin_reach - y
-    return math.hypot(x - ex, y - ey) - design.pin_edge
-
-
 # What are the outlines of the Swiss lever's balance and banking pins?
 #
 # The table roller (TABLE) carries the D-shaped impulse pin (PIN) and, in another plane, the safety roller with its
@@ -388,11 +247,12 @@ INERTIA = 12.0  # mg·cm², of the balance as drawn by default
 
 def roller(design: Swiss, inertia: float) -> list[Loop]:
     """Table with the staff's hole, pin, safety roller; the rim of a balance of that inertia (mg·cm²)."""
+    reach = design.pin_reach
     return [
         circle("TABLE", (0.0, 0.0), _table_radius(design)),
         circle("TABLE", (0.0, 0.0), STAFF_RADIUS * design.lever_scale, hole=True),
-        pin(design),
-        safety(design),
+        impulse_pin(reach, design.pin_centre, design.pin_radius, reach - design.pin_centre, design.pin_edge),
+        safety_roller(design.safety_radius, design.crescent_depth, design.crescent_half, CRESCENT_EDGE * design.lever_scale),
         circle("SAFETY", (0.0, 0.0), STAFF_RADIUS * design.lever_scale, hole=True),
         *wheel_of(design, inertia).rim(),
     ]
@@ -405,29 +265,6 @@ def wheel_of(design: Swiss, inertia: float) -> BalanceWheel:
 
 def _table_radius(design: Swiss) -> float:
     return TABLE_RADIUS * design.lever_scale + design.reach_beyond
-
-
-def pin(design: Swiss) -> Loop:
-    """A round pin with part of its diameter ground away: the flat looks outwards, its edges are rounded."""
-    centre = (0.0, -design.pin_centre)
-    height = design.pin_reach - design.pin_centre
-    half = math.sqrt(design.pin_radius**2 - height**2)
-    left, right = (-half, -design.pin_reach), (half, -design.pin_reach)
-    edges: list[Edge] = [Line(*left, *right), arc_between(right, left, centre, True)]
-    return Loop(tuple(fillet_chain(edges, [design.pin_edge, design.pin_edge], closed=True)), "PIN")
-
-
-def safety(design: Swiss) -> Loop:
-    """The safety roller: a disc with a hollow for the dart's point."""
-    radius, bottom = design.safety_radius, design.safety_radius - design.crescent_depth
-    right, left = (polar(radius, -90.0 + side * design.crescent_half) for side in (1.0, -1.0))
-    half, height = right[0], -right[1]
-    hollow = (half**2 + (height - bottom) ** 2) / (2.0 * (height - bottom))  # circle through both edges and the bottom
-    edges: list[Edge] = [
-        arc_between(right, left, (0.0, 0.0), True),
-        arc_between(left, right, (0.0, -(bottom + hollow)), False),
-    ]
-    return Loop(tuple(fillet_chain(edges, [CRESCENT_EDGE * design.lever_scale] * 2, closed=True)), "SAFETY")
 
 
 def banking(design: Swiss) -> list[Loop]:
@@ -444,12 +281,13 @@ def banking(design: Swiss) -> list[Loop]:
 # 2.4 mm and 15 teeth; they grow with the wheel, and what lies between two teeth shrinks where there are more.
 
 LAYER = "TEETH"
+MOUTH = 0.02  # mm at the first design's size: rounding between horn and slot
 ROOT_RADIUS = 1.9  # bottom of the gaps
 TOE_ROOT, HEEL_ROOT = 0.16, 0.46  # fillets into the gap, before and behind a tooth
 CLUB = 0.085  # straight back of the club, from the heel
 CLUB_LEAN = 14.0  # of that back, from the radius, towards the toe, degrees
 RIM_INNER, HUB_RADIUS, BORE_RADIUS = 1.66, 0.42, 0.11
-ARMS_SWISS_LEVER_WHEEL, ARM_WIDTH, WINDOW_FILLET = 4, 0.17, 0.09
+WHEEL_ARMS, ARM_WIDTH, WINDOW_FILLET = 4, 0.17, 0.09
 DEEP = 1.11  # how far a hollow may lean over the thickness of the tooth
 FEW = 15  # teeth, up to which the gaps are as drawn here
 
@@ -457,9 +295,10 @@ FEW = 15  # teeth, up to which the gaps are as drawn here
 def wheel(design: Swiss) -> list[Loop]:
     """The toothed contour, the windows between the arms and the bore."""
     scale = design.wheel_scale
-    arms = Arms(ARMS_SWISS_LEVER_WHEEL, ARM_WIDTH * scale, HUB_RADIUS * scale, RIM_INNER * scale, WINDOW_FILLET * scale)
-    windows = [Loop(tuple(arms.window(i)), LAYER, hole=True) for i in range(arms.number)]
-    return [contour(design), *windows, circle(LAYER, (0.0, 0.0), BORE_RADIUS * scale, hole=True)]
+    arms = Arms(WHEEL_ARMS, ARM_WIDTH * scale, HUB_RADIUS * scale, RIM_INNER * scale, WINDOW_FILLET * scale)
+    pitch = math.radians(360.0 / design.teeth)
+    teeth = around(LAYER, tooth_and_gap(design), (i * pitch for i in range(design.teeth)))
+    return [teeth, *arms.windows(LAYER), circle(LAYER, (0.0, 0.0), BORE_RADIUS * scale, hole=True)]
 
 
 def root_radius(design: Swiss) -> float:
@@ -470,14 +309,6 @@ def root_radius(design: Swiss) -> float:
 def gap_scale(design: Swiss) -> float:
     """Of what lies between two teeth."""
     return design.wheel_scale * min(1.0, FEW / design.teeth)
-
-
-def contour(design: Swiss) -> Loop:
-    """All teeth, counter-clockwise; one tooth and the gap behind it, turned once per tooth."""
-    pitch = math.radians(360.0 / design.teeth)
-    tooth = Loop(tuple(tooth_and_gap(design)), LAYER)
-    edges = [edge for i in range(design.teeth) for edge in tooth.moved(i * pitch, (0.0, 0.0)).edges]
-    return Loop(tuple(edges), LAYER)
 
 
 def tooth_and_gap(design: Swiss) -> list[Edge]:
@@ -548,13 +379,11 @@ def tooth_gap(design: Swiss) -> float:
     return (ahead + 180.0) % 360.0 - 180.0
 
 
-# What is the outline of the Swiss lever's lever?
-
 STONE_LENGTH, STONE_EDGE = 0.70, 0.03
 EXPOSED = 0.33  # length of a stone outside its slot
 SHELLAC = 0.006  # gap between stone and slot
 WALL_OUT, WALL_IN, WALL_END = 0.13, 0.13, 0.13  # metal around the slot
-HUB_RADIUS_SWISS_LEVER_LEVER, BORE_RADIUS_SWISS_LEVER_LEVER = 0.25, 0.085
+LEVER_HUB, LEVER_BORE = 0.25, 0.085
 STEM_ROOT, NECK = 0.165, 3.02  # half width of the stem at the hub; height at which the fork begins
 HORN_TIP = 0.075  # breadth of a horn's end
 HIP = (0.43, 3.52)  # where the fork is widest
@@ -564,11 +393,10 @@ DART_SLOPE = 30.0  # half angle of its point
 
 def lever(design: Swiss) -> list[Loop]:
     """All outlines of the lever."""
-    stones = [stone(design, 1), stone(design, -1)]
     return [
-        *stones,
+        *(stone(design, side) for side in (1, -1)),
         body(design),
-        circle("ARMS", (0.0, 0.0), BORE_RADIUS_SWISS_LEVER_LEVER * design.lever_scale, hole=True),
+        circle("ARMS", (0.0, 0.0), LEVER_BORE * design.lever_scale, hole=True),
         fork(design),
         dart(design),
     ]
@@ -599,9 +427,8 @@ class Slot:
 def stone(design: Swiss, side: int) -> Loop:
     """Locking corner, impulse face, discharge corner, and the shank."""
     slot = Slot(design, side)
-    corners = [slot.corner, slot.end, slot.at(slot.length, slot.width), slot.at(slot.length, 0.0)]
-    edges: list[Edge] = [Line(*corners[i], *corners[(i + 1) % 4]) for i in range(4)]
-    return Loop(tuple(fillet_chain(edges, [0.0, slot.edge, slot.edge, 0.0], closed=True)), "STONES")
+    back, front = slot.at(slot.length, slot.width), slot.at(slot.length, 0.0)
+    return rounded("STONES", [(slot.corner, 0.0), (slot.end, 0.0), (back, slot.edge), (front, slot.edge)])
 
 
 def body(design: Swiss) -> Loop:
@@ -620,8 +447,7 @@ def body(design: Swiss) -> Loop:
         (Line(*right_root, half, bend), 1.2 * scale),
         (Line(half, bend, half, neck), 0.0),
     ]
-    edges, radii = [edge for edge, _ in parts], [radius for _, radius in parts]
-    return Loop(tuple(fillet_chain(edges, radii, closed=True, yielding=True)), "ARMS")
+    return filleted("ARMS", parts, yielding=True)
 
 
 def neck_height(design: Swiss) -> float:
@@ -674,7 +500,7 @@ def _underside(entry: Slot, exit_: Slot, scale: float) -> list[tuple[Edge, float
     """From the entry holder under the hub to the exit holder."""
     start = entry.at(entry.exposed, entry.width + entry.wall_in)
     end = exit_.at(exit_.exposed, -exit_.wall_in)
-    left, right = polar(HUB_RADIUS_SWISS_LEVER_LEVER * scale, 210.0), polar(HUB_RADIUS_SWISS_LEVER_LEVER * scale, 325.0)
+    left, right = polar(LEVER_HUB * scale, 210.0), polar(LEVER_HUB * scale, 325.0)
     return [
         (_bow(start, left, -0.75 * entry.scale, 0.077 * entry.scale), 0.08 * scale),
         (arc_between(left, right, (0.0, 0.0), True), 0.08 * scale),
@@ -683,33 +509,14 @@ def _underside(entry: Slot, exit_: Slot, scale: float) -> list[tuple[Edge, float
 
 
 def fork(design: Swiss) -> Loop:
-    """The fork, counter-clockwise from the left end of the neck; the left half is the right one mirrored."""
-    right, neck = _right_fork(design), neck_height(design)
-    half = design.slot_width / 2.0
-    edges: list[Edge] = [Line(-design.stem_half, neck, design.stem_half, neck), *[edge for edge, _ in right]]
-    edges += [Line(half, design.slot_bottom, -half, design.slot_bottom), *[_mirrored(edge) for edge, _ in reversed(right)]]
-    radii = [radius for _, radius in right]
-    return Loop(tuple(fillet_chain(edges, [0.0, *radii, *reversed(radii), 0.0], closed=True)), "FORK")
-
-
-def _right_fork(design: Swiss) -> list[tuple[Edge, float]]:
-    """From the neck up the outside, round the horn and down the slot; each edge with the fillet after it."""
-    scale, neck = design.lever_scale, neck_height(design)
+    """The fork, drawn with the lever on its exit bank."""
+    scale, neck, tip_out = design.lever_scale, neck_height(design), _horn_tip(design)
     centre = design.balance_from_bank(-1)
-    tip_out = _horn_tip(design)
-    tip_in = polar(design.horn_radius, _horn_bearing(design), centre)
-    half = design.slot_width / 2.0
-    mouth = (half, centre[1] - math.sqrt(design.horn_radius**2 - (half - centre[0]) ** 2))
-    foot = (0.165 * scale, neck + 0.2 * scale)
     hip = (HIP[0] * scale + (tip_out[0] - REFERENCE_TIP * scale), HIP[1] * scale - design.reach_beyond)
-    return [
-        (Line(design.stem_half, neck, *foot), 0.4 * scale),
-        (Line(*foot, *hip), 0.2 * scale),
-        (Line(*hip, *tip_out), 0.03 * scale),
-        (Line(*tip_out, *tip_in), 0.03 * scale),
-        (arc_between(tip_in, mouth, centre, False), MOUTH * scale),
-        (Line(*mouth, half, design.slot_bottom), min(0.09 * scale, 0.3 * design.slot_width)),
-    ]
+    outside = [(design.stem_half, neck), (0.165 * scale, neck + 0.2 * scale), hip, tip_out]
+    tip, slot = polar(design.horn_radius, _horn_bearing(design), centre), (design.slot_width / 2.0, design.slot_bottom)
+    radii = [*(share * scale for share in (0.4, 0.2, 0.03, 0.03, MOUTH)), min(0.09 * scale, 0.3 * design.slot_width)]
+    return lever_parts.fork(outside, tip, (centre, design.horn_radius), slot, radii)
 
 
 def _horn_bearing(design: Swiss) -> float:
@@ -726,106 +533,8 @@ def _horn_tip(design: Swiss) -> Point:
 REFERENCE_TIP = _horn_tip(Swiss())[0]  # beside which HIP stands
 
 
-def _mirrored(edge: Edge) -> Edge:
-    """The mirror image in the y axis, run through the other way (so that the material stays on the left)."""
-    if isinstance(edge, Line):
-        return Line(-edge.x1, edge.y1, -edge.x0, edge.y0)
-    return Arc(-edge.x, edge.y, edge.radius, math.pi - edge.start_angle - edge.sweep, edge.sweep)
-
-
 def dart(design: Swiss) -> Loop:
-    """A round foot, a bar and a rounded point: the guard of the safety action."""
-    y, tip, scale = design.dart_centre, design.dart_tip, design.lever_scale
-    foot_at, foot_radius, bar = DART_FOOT * scale - design.reach_beyond, DART_FOOT_RADIUS * scale, DART_HALF * scale
-    left, right = polar(tip, 180.0 - DART_SLOPE, (0.0, y)), polar(tip, DART_SLOPE, (0.0, y))
-    drop = (bar - right[0]) / math.tan(math.radians(DART_SLOPE))
-    join = foot_at + math.sqrt(foot_radius**2 - bar**2)
-    shoulder = right[1] - drop
-    parts: list[tuple[Edge, float]] = [
-        (arc_between((-bar, join), (bar, join), (0.0, foot_at), True), 0.03 * scale),
-        (Line(bar, join, bar, shoulder), 0.0),
-        (Line(bar, shoulder, *right), 0.0),
-        (arc_between(right, left, (0.0, y), True), 0.0),
-        (Line(*left, -bar, shoulder), 0.0),
-        (Line(-bar, shoulder, -bar, join), 0.03 * scale),
-    ]
-    return Loop(tuple(fillet_chain([edge for edge, _ in parts], [radius for _, radius in parts], closed=True)), "DART")
-
-
-# How much of the drop is left once unlocking has drawn the wheel back?
-#
-# A tooth has dropped on one stone, the tooth before it has just left the other. While the lever unlocks, the locking face
-# pushes
-# the wheel back (the recoil that its draw asks for), and the other stone comes in behind the tooth that it let off. What the
-# wheel could still be turned back before the two meet is what is left of the drop; where nothing is left, the lever cannot
-# unlock.
-
-PARTS = 40  # of an edge
-STEPS = 8  # of the lever, from the bank to unlocked
-
-
-def drop_after_recoil(design: Swiss, side: int) -> float:
-    """Degrees of the wheel, while the entry (+1) or exit (-1) stone unlocks; negative where the other stone is in the way.
-
-    The least over all places of the lever, between every point of that stone and the tooth at the same radius. Infinite where
-    the stone stays outside the wheel.
-    """
-    tooth = _radii_and_angles(_back_of_tooth(design))
-    stone = _points(_let_off_faces(design, -side))
-    places = np.linspace(design.bank, design.unlocked, STEPS + 1)
-    return min(_left(design, side, float(lever), tooth, stone) for lever in places)
-
-
-def recoil(design: Swiss, side: int) -> float:
-    """Degrees by which the wheel is turned back from the bank until it is unlocked, teeth sliding on that stone."""
-    return _locked_toe(design, side, design.unlocked) - _locked_toe(design, side, design.bank)
-
-
-def _left(
-    design: Swiss, side: int, lever: float, tooth: tuple[NDArray[np.float64], NDArray[np.float64]], stone: Sequence[Point]
-) -> float:
-    pitch = 360.0 / design.teeth
-    spaces = 2.0 * design.half_span / pitch
-    let_off = _locked_toe(design, side, lever) + (-math.ceil(spaces) if side > 0 else math.floor(spaces)) * pitch
-    placed = [design.in_movement(point, side * lever) for point in stone]
-    radii, angles = tooth
-    gaps = [
-        angle_of(point) - let_off - float(np.interp(math.hypot(*point), radii, angles))
-        for point in placed
-        if radii[0] <= math.hypot(*point) <= radii[-1]
-    ]
-    return min(gaps, default=math.inf)
-
-
-def _locked_toe(design: Swiss, side: int, lever: float) -> float:
-    """Polar angle in the movement of a toe on the locking face, the lever that many degrees to the stone's own side."""
-    corner = design.in_movement(design.locking_corner(side), side * lever)
-    direction = design.face_direction(side) + side * lever
-    middle = corner[0] * math.cos(math.radians(direction)) + corner[1] * math.sin(math.radians(direction))
-    # At `unlocked` the corner is on the circle, but for rounding.
-    reach = -middle + math.sqrt(max(0.0, middle**2 - math.hypot(*corner) ** 2 + design.tip_radius**2))
-    return angle_of(along(corner, direction, reach))
-
-
-def _back_of_tooth(design: Swiss) -> list[Edge]:
-    _, heel, back = toe_heel_back(design)
-    lean, hollow, _ = behind(design, back)
-    return [Line(*heel, *back), *lean, hollow]
-
-
-def _let_off_faces(design: Swiss, side: int) -> list[Edge]:
-    """Impulse face, and the side of the stone beyond its discharge corner; in the lever's frame."""
-    slot = Slot(design, side)
-    return [Line(*slot.corner, *slot.end), Line(*slot.end, *slot.at(slot.exposed, slot.width))]
-
-
-def _points(edges: Sequence[Edge]) -> list[Point]:
-    return [edge.point(part / PARTS) for edge in edges for part in range(PARTS + 1)]
-
-
-def _radii_and_angles(edges: Sequence[Edge]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """In the order of the radii; angles in degrees, from the toe."""
-    points = _points(edges)
-    radii, angles = np.array([math.hypot(*point) for point in points]), np.array([angle_of(point) for point in points])
-    order = np.argsort(radii, kind="stable")
-    return radii[order], angles[order]
+    """The guard of the safety action: a round foot, a bar and a rounded point."""
+    scale = design.lever_scale
+    foot = (DART_FOOT * scale - design.reach_beyond, DART_FOOT_RADIUS * scale)
+    return guard("DART", design.dart_centre, design.dart_tip, DART_HALF * scale, DART_SLOPE, foot, 0.03 * scale)

@@ -1,20 +1,19 @@
-"""The verge as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Verge escapement with a foliot: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
-from watchsim.construction.design import Conflict, Design, contact_tables, dim, told
-from watchsim.construction.outline import circle, rounded
+from watchsim.construction import scene_builder as toml
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim
+from watchsim.construction.outline import circle, polygon, rounded
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
-from watchsim.geometry.primitives import Line, Point
+from watchsim.geometry.primitives import Point
 
-# Which numbers does the designer of a verge escapement choose?
-
-CHOSEN = "chosen for this design"
 USUAL = "usual: 90° to 110° (Britten, The Watch and Clock Maker's Handbook)"
 
 
@@ -83,8 +82,6 @@ def start(values: Verge) -> float:
     return depth(values) * math.tan(math.radians(0.5 * values.flag_angle)) - 1e-3 * pitch(values)
 
 
-# What are the outlines of a verge, and of the two sides of its crown wheel?
-
 AHEAD = 2  # teeth that have passed already
 STAFF = 0.45  # radius of the verge's staff, in depths
 THICK, THINNEST = 0.16, 0.08  # of a flag, in depths and in pitches, the smaller of the two
@@ -124,9 +121,8 @@ def _rack(values: Verge, layer: str, ahead: float, way: float) -> Loop:
 
 def _closed(points: list[Point], layer: str) -> Loop:
     """Counter-clockwise, whichever way the points run."""
-    ends = list(zip(points, [*points[1:], points[0]], strict=True))
-    area = sum(a[0] * b[1] - b[0] * a[1] for a, b in ends)
-    loop = Loop(tuple(Line(*a, *b) for a, b in ends), layer)
+    area = sum(a[0] * b[1] - b[0] * a[1] for a, b in zip(points, [*points[1:], points[0]], strict=True))
+    loop = polygon(layer, points)
     return loop if area > 0.0 else loop.reversed()
 
 
@@ -154,7 +150,7 @@ def _box(layer: str, x: float, half: float, tall: float) -> Loop:
     """A plate with rounded corners about (x, 0), so wide and so high to either side."""
     corner = 0.4 * min(half, tall)
     corners = ((-half, -tall), (half, -tall), (half, tall), (-half, tall))
-    return Loop(tuple(rounded([(x + dx, dy, corner) for dx, dy in corners])), layer)
+    return rounded(layer, [((x + dx, dy), corner) for dx, dy in corners])
 
 
 def _flag(values: Verge, layer: str, angle: float, side: float) -> Loop:
@@ -165,69 +161,41 @@ def _flag(values: Verge, layer: str, angle: float, side: float) -> Loop:
     return _closed([(side * (c * x - s * y), s * x + c * y) for x, y in points], layer)
 
 
-# What does the scene of a verge escapement say?
-
-TEXT = """\
-# A verge escapement with a foliot, drawn to these dimensions:
-{dimensions}
-
-[scene]
-title  = "Verge and foliot, crown wheel of {values.teeth} teeth"
-schema = 1
-
-[bodies.verge]                       # with the foliot, seen along its axis
-drawing  = "verge.dxf"
-layers   = ["NEAR_FLAG", "FAR_FLAG"]
-draw     = ["FOLIOT", "WEIGHTS"]
-pivot    = ["0 mm", "0 mm"]
-inertia  = "{values.foliot_inertia:.15g} kg·cm²"
-
-[bodies.crown_wheel]                 # stands across the plane, its axis pointing down
-inertia  = "{values.wheel_inertia:.15g} g·cm²"
-
-[bodies.near_side]                   # of its rim runs to the right,
-drawing  = "near_side.dxf"
-motion   = "slide"
-axis     = [1.0, 0.0]
-mass     = "1 µg"                    # weighed with the wheel
-
-[bodies.far_side]                    # the far one to the left
-drawing  = "far_side.dxf"
-motion   = "slide"
-axis     = [-1.0, 0.0]
-mass     = "1 µg"
-
-[[gears]]
-between = ["crown_wheel", "near_side"]
-ratio   = "{values.wheel_radius:.15g} mm/rad"
-
-[[gears]]
-between = ["crown_wheel", "far_side"]
-ratio   = "{values.wheel_radius:.15g} mm/rad"
-
-[[torques]]
-body  = "crown_wheel"
-value = "{values.torque:.15g} mN·m"
-
-[[damping]]
-body    = "verge"
-viscous = "{values.viscous:.15g} mN·m·s/rad"
-
-{contacts}
-[run]
-duration  = "20 s"
-tolerance = 1e-12
-"""
-
-CONTACTS = (("near_side.NEAR", "verge.NEAR_FLAG"), ("far_side.FAR", "verge.FAR_FLAG"))
-
-
 def scene_text(values: Verge) -> str:
     """The text of scene.toml: the verge begins at rest in the middle, a tooth of the near side at its flag."""
-    return TEXT.format(dimensions=told(values), values=values, contacts=contact_tables(values, *CONTACTS))
+    words, rim = "A verge escapement with a foliot, drawn to these dimensions:", f"{values.wheel_radius:.15g} mm/rad"
+    side: dict[str, Any] = {"motion": "slide", "axis": (1.0, 0.0)}
+    return toml.scene(
+        toml.head(values, words, f"Verge and foliot, crown wheel of {values.teeth} teeth"),
+        toml.body(
+            *("verge", "verge", "NEAR_FLAG FAR_FLAG", "with the foliot, seen along its axis"),
+            draw="FOLIOT WEIGHTS",
+            pivot=toml.ORIGIN,
+            inertia=f"{values.foliot_inertia:.15g} kg·cm²",
+        ),
+        toml.table(
+            *("[bodies.crown_wheel]", "stands across the plane, its axis pointing down", 8),
+            inertia=f"{values.wheel_inertia:.15g} g·cm²",
+        ),
+        toml.table(
+            *("[bodies.near_side]", "of its rim runs to the right,", 8),
+            drawing="near_side.dxf",
+            **side,
+            mass=toml.Noted("1 µg", "weighed with the wheel", 20),
+        ),
+        toml.table(
+            *("[bodies.far_side]", "the far one to the left", 8),
+            drawing="far_side.dxf",
+            **{**side, "axis": (-1.0, 0.0)},
+            mass="1 µg",
+        ),
+        *(toml.table("[[gears]]", between=("crown_wheel", f"{name}_side"), ratio=rim) for name in ("near", "far")),
+        toml.torque("crown_wheel", f"{values.torque:.15g} mN·m"),
+        toml.table("[[damping]]", body="verge", viscous=f"{values.viscous:.15g} mN·m·s/rad"),
+        toml.contacts(values, "near_side.NEAR verge.NEAR_FLAG", "far_side.FAR verge.FAR_FLAG"),
+        toml.run("20 s", "1e-12"),
+    )
 
-
-# What makes the verge escapement a design?
 
 STEEPEST = 80.0  # degrees of a flag against the wheel's axis when it lets go
 NARROWEST = 3.0  # degrees of a tooth

@@ -1,4 +1,4 @@
-"""The winding click as a design: its dimensions, what follows from them, its outlines and its scene."""
+"""Winding click with recoil: dimensions, outlines, scene and conflicts."""
 
 from __future__ import annotations
 
@@ -7,17 +7,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from watchsim.construction import ratchet
-from watchsim.construction import ratchet as saw
-from watchsim.construction.design import Conflict, Design, contact_tables, dim, leaf_text, told
-from watchsim.construction.outline import along, angle_of, circle, polar, rounded
+from watchsim.construction import scene_builder as toml
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim
+from watchsim.construction.outline import along, angle_of, circle, polar, polygon
 from watchsim.construction.ratchet import Ratchet
 from watchsim.drawing.write import Sheet
-from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Point
-
-# Which numbers does the designer of a winding click with recoil choose?
-
-CHOSEN = "chosen for this design"
 
 
 @dataclass(frozen=True)
@@ -86,7 +81,7 @@ def lets_off(values: WindingClick) -> float:
 
 def letting_off(values: WindingClick) -> float:
     """Angle of the wheel, of which the first tooth then stands under the nose."""
-    return angle_of(nose(values, lets_off(values))) - angle_of(saw.tip(teeth(values)))
+    return angle_of(nose(values, lets_off(values))) - angle_of(ratchet.tip(teeth(values)))
 
 
 def held(values: WindingClick) -> float:
@@ -95,7 +90,7 @@ def held(values: WindingClick) -> float:
     ValueError where no face can.
     """
     middle = nose(values, values.bank)
-    foot = saw.root(teeth(values))[0] * math.sin(math.radians(values.undercut)) - values.nose_radius
+    foot = ratchet.root(teeth(values))[0] * math.sin(math.radians(values.undercut)) - values.nose_radius
     return angle_of(middle) - math.degrees(math.asin(foot / math.hypot(*middle))) + values.undercut
 
 
@@ -107,95 +102,70 @@ def nose_in_teeth(values: WindingClick) -> tuple[float, float]:
     """With the click on its bank: how far up the locking face the nose touches it, and how far it is from the back before."""
     turn, middle = held(values), nose(values, values.bank)
     seen = polar(math.hypot(*middle), angle_of(middle) - turn)
-    root, back = saw.root(teeth(values)), math.radians(saw.back(teeth(values)))
+    root, back = ratchet.root(teeth(values)), math.radians(ratchet.back(teeth(values)))
     lean = math.radians(-values.undercut)
     dx, dy = seen[0] - root[0], seen[1] - root[1]
     return dx * math.cos(lean) + dy * math.sin(lean), dy * math.cos(back) - dx * math.sin(back) - values.nose_radius
 
 
-# What does the scene of a winding click with recoil say?
-
 BEGIN, EASE, AFTER = 0.05, 0.02, 0.13  # s: before the hand winds, over which it takes hold and lets go, and after
-
-TEXT = """\
-# A winding click with recoil, drawn to these dimensions:
-{dimensions}
-# Let go, the wheel runs back by {recoil:.6g}° at least, and by up to {pitch:.6g}° more.
-
-[scene]
-title  = "Winding click with recoil, {values.teeth} teeth"
-schema = 1
-
-[bodies.wheel]                       # on the barrel's arbor, wound counter-clockwise
-drawing  = "wheel.dxf"
-layers   = ["TEETH"]
-pivot    = ["0 mm", "0 mm"]
-angle    = "{wheel!r}°"              # a locking face on the nose
-inertia  = "{values.wheel_inertia:.15g} mg·cm²"
-
-[bodies.click]                       # goes with the teeth both ways, but for its bank
-drawing  = "click.dxf"
-layers   = ["NOSE"]
-pivot    = ["0 mm", "0 mm"]
-position = ["0 mm", "{distance!r} mm"]
-angle    = "{values.bank!r}°"
-inertia  = "{values.click_inertia:.15g} mg·cm²"
-
-[[springs]]                          # a leaf, which holds the click on its bank
-body        = "click"
-leaf        = {{ {leaf} }}
-preload     = "{preload!r} µN·m"
-stop        = "{values.bank!r}°"
-restitution = {values.restitution!r}
-
-[[torques]]                          # the mainspring; from {values.full:g}° on its coils lie on each other
-body  = "wheel"
-over  = "angle"
-table = [["{wheel!r}°", "{held:.15g} mN·m"], ["{full!r}°", "{held:.15g} mN·m"], ["{beyond!r}°", "{tight!r} mN·m"]]
-
-[[torques]]                          # the hand that winds, and lets go
-body  = "wheel"
-over  = "time"
-table = [["{t0!r} s", "0 mN·m"], ["{t1!r} s", "{wind} mN·m"], ["{t2!r} s", "{wind} mN·m"], ["{t3!r} s", "0 mN·m"]]
-
-[[damping]]
-body    = "wheel"
-viscous = "{values.viscous:.15g} mN·m·s/rad"
-
-{contacts}
-[run]
-duration  = "{duration!r} s"
-tolerance = 1e-9
-"""
-
-CONTACTS = (("click.NOSE", "wheel.TEETH"),)
 BEYOND = 1.0  # rad past the full mainspring: as far as its table goes
 
 
 def scene_text(values: WindingClick) -> str:
     """The text of scene.toml: the click holds, the wheel is wound until its spring is full, and let go."""
-    full, times = held(values) + values.full, (BEGIN, BEGIN + EASE, BEGIN + values.wound_for, BEGIN + values.wound_for + EASE)
-    return TEXT.format(
-        dimensions=told(values),
-        values=values,
-        contacts=contact_tables(values, *CONTACTS),
-        recoil=least_recoil(values),
-        pitch=360.0 / values.teeth,
-        wheel=held(values),
-        distance=distance(values),
-        leaf=leaf_text(values),
-        preload=values.leaf_force * values.leaf_arm,  # mN·mm = µN·m
-        held=-values.mainspring,
-        full=full,
-        beyond=full + math.degrees(BEYOND),
-        tight=-(values.mainspring + values.bound * BEYOND),
-        wind=f"{values.winding:.15g}",
-        **{f"t{i}": round(time, 9) for i, time in enumerate(times)},
-        duration=round(times[3] + AFTER, 9),
+    start, hand = held(values), f"{values.winding:.15g} mN·m"
+    full = start + values.full
+    spring = f"{-values.mainspring:.15g} mN·m"
+    tight = f"{-(values.mainspring + values.bound * BEYOND)!r} mN·m"
+    ends = (BEGIN, BEGIN + EASE, BEGIN + values.wound_for, BEGIN + values.wound_for + EASE)
+    times = [f"{round(time, 9)!r} s" for time in ends]
+    recoil = (
+        f"Let go, the wheel runs back by {least_recoil(values):.6g}° at least, and by up to {360.0 / values.teeth:.6g}° more."
+    )
+    return toml.scene(
+        toml.head(
+            *(values, "A winding click with recoil, drawn to these dimensions:"),
+            *(f"Winding click with recoil, {values.teeth} teeth", recoil),
+        ),
+        toml.body(
+            *("wheel", "wheel", "TEETH", "on the barrel's arbor, wound counter-clockwise"),
+            pivot=toml.ORIGIN,
+            angle=toml.Noted(f"{start!r}°", "a locking face on the nose", 14),
+            inertia=f"{values.wheel_inertia:.15g} mg·cm²",
+        ),
+        toml.body(
+            *("click", "click", "NOSE", "goes with the teeth both ways, but for its bank"),
+            pivot=toml.ORIGIN,
+            position=toml.at(0, distance(values)),
+            angle=f"{values.bank!r}°",
+            inertia=f"{values.click_inertia:.15g} mg·cm²",
+        ),
+        toml.table(
+            *("[[springs]]", "a leaf, which holds the click on its bank"),
+            body="click",
+            leaf=toml.leaf(values),
+            preload=f"{values.leaf_force * values.leaf_arm!r} µN·m",  # mN·mm = µN·m
+            stop=f"{values.bank!r}°",
+            restitution=values.restitution,
+        ),
+        toml.table(
+            *("[[torques]]", f"the mainspring; from {values.full:g}° on its coils lie on each other"),
+            body="wheel",
+            over="angle",
+            table=((f"{start!r}°", spring), (f"{full!r}°", spring), (f"{full + math.degrees(BEYOND)!r}°", tight)),
+        ),
+        toml.table(
+            *("[[torques]]", "the hand that winds, and lets go"),
+            body="wheel",
+            over="time",
+            table=list(zip(times, ("0 mN·m", hand, hand, "0 mN·m"), strict=True)),
+        ),
+        toml.table("[[damping]]", body="wheel", viscous=f"{values.viscous:.15g} mN·m·s/rad"),
+        toml.contacts(values, "click.NOSE wheel.TEETH"),
+        toml.run(f"{round(ends[3] + AFTER, 9)!r} s"),
     )
 
-
-# What makes the winding click with recoil a design?
 
 FOOT = 2.5  # radius of the click about its pivot, in radii of its nose
 SHALLOWEST, STEEPEST = 0.1, 60.0  # of the depth; degrees of the click at the bank
@@ -204,8 +174,8 @@ SHALLOWEST, STEEPEST = 0.1, 60.0  # of the depth; degrees of the click at the ba
 def draw(values: WindingClick) -> dict[str, Sheet]:
     """The wheel; the click with its nose below the pivot, arm and foot touch nothing."""
     r, low, wide = values.nose_radius, -values.click_length, FOOT * values.nose_radius
-    arm = rounded([(-r, low, 0.0), (r, low, 0.0), (wide, 0.0, 0.0), (-wide, 0.0, 0.0)])
-    click = [circle("NOSE", (0.0, low), r), Loop(tuple(arm), "ARM"), circle("FOOT", (0.0, 0.0), wide)]
+    arm = polygon("ARM", [(-r, low), (r, low), (wide, 0.0), (-wide, 0.0)])
+    click = [circle("NOSE", (0.0, low), r), arm, circle("FOOT", (0.0, 0.0), wide)]
     return {"wheel": Sheet(tuple(ratchet.wheel(teeth(values)))), "click": Sheet(tuple(click))}
 
 
@@ -236,8 +206,7 @@ def _crowded(values: WindingClick) -> Iterator[Conflict]:
     except ValueError:
         yield Conflict("nose_radius", "no locking face can meet the nose on its bank")
         return
-    tip, root = (find(teeth(values)) for find in (ratchet.tip, ratchet.root))
-    if not 0.0 < along_face < math.dist(tip, root):
+    if not 0.0 < along_face < math.dist(ratchet.tip(teeth(values)), ratchet.root(teeth(values))):
         yield Conflict("reach", "the nose on its bank does not meet a locking face between root and point")
     elif free < 0.0:
         yield Conflict("nose_radius", f"the nose meets the back of a tooth before its bank, by {-free:.3g} mm")

@@ -1,29 +1,27 @@
-"""Which outlines nearly coincide?
+"""What is wrong with the edges and outlines of a layer?
 
-What was drawn twice exactly is taken out before. A copy that is off by some nanometres is not: the smaller of the two would
-count as a hole, and next to nothing would be left of the part.
+Open outlines, crossings and overlaps, edges that are not intended, and outlines that nearly coincide. What was drawn twice
+exactly is taken out before; of a copy that is off by some nanometres the smaller one would count as a hole, and next to nothing
+would be left of the part.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import chain, pairwise
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.drawing.findings import Finding, Stroke
+from watchsim.drawing.findings import Finding, Stroke, finding_at
 from watchsim.drawing.material import MARKS, last_word
 from watchsim.drawing.nodes import TIGHT, Grid, Nodes, Outline, Track, nearest_fraction, passes_through
-from watchsim.geometry.loops import Box, Floats, Ints, Loop, Table, extents, table_of
-from watchsim.geometry.loops import near_pairs as near_pairs_of_loops
-from watchsim.geometry.meetings import meetings, within
+from watchsim.geometry.loops import Box, Floats, Ints, Loop, Table, extents, meetings, near_pairs, table_of, within
 from watchsim.geometry.primitives import Arc, Edge, Line, Point
 
-# Where are outlines open?
-#
 # Loose ends are paired with their nearest partner, so that each gap is named once, with both ends.
 
 STRAY = 0.25  # a single line whose ends are further than this part of its length from anything is no torn outline
@@ -39,16 +37,14 @@ def open_ends(chains: Sequence[Sequence[int]], loose: Sequence[int], strokes: Se
     """
     if not loose:
         return []
-    near = near_pairs([nodes.ends[end] for end in loose])
+    near = near_ends([nodes.ends[end] for end in loose])
     stray = stray_lines([steps[0] // 2 for steps in chains if len(steps) == 1], loose, near, strokes)
     pairs = paired(loose, near, stray, chains_of(chains, strokes))
-    meant = {number for number in stray if last_word(strokes[number].layer) in MARKS}
-    return [stray_finding(strokes[number]) for number in stray if number not in meant] + [
-        gap_finding(a, b, strokes, nodes) for a, b in pairs
-    ]
+    found = [stray_finding(strokes[number]) for number in stray if last_word(strokes[number].layer) not in MARKS]
+    return found + [gap_finding(a, b, strokes, nodes) for a, b in pairs]
 
 
-def near_pairs(points: Sequence[Point]) -> list[tuple[float, int, int]]:
+def near_ends(points: Sequence[Point]) -> list[tuple[float, int, int]]:
     """(distance, i, j) with i < j, nearest first, of all pairs of which one is among the nearest of the other."""
     count = min(NEIGHBOURS + 1, len(points))
     if count < 2:
@@ -132,9 +128,9 @@ def related(gap: float, one: tuple[int, float] | None, other: tuple[int, float] 
 
 
 def stray_finding(stroke: Stroke) -> Finding:
-    x, y = stroke.edge.point(0.5)
     message = f"{stroke.source} is a single line that touches nothing; it is kept as an open chain"
-    return Finding("stray-line", "warning", message, "Delete it, or put it on another layer.", stroke.layer, 1e3 * x, 1e3 * y)
+    fix = "Delete it, or put it on another layer."
+    return finding_at(stroke.edge.point(0.5), "stray-line", "warning", message, fix, stroke.layer)
 
 
 def gap_finding(end: int, partner: int, strokes: Sequence[Stroke], nodes: Nodes) -> Finding:
@@ -143,7 +139,7 @@ def gap_finding(end: int, partner: int, strokes: Sequence[Stroke], nodes: Nodes)
     layer = strokes[end // 2].layer
     if partner < 0:
         message = f"the outline is open at {shown(p)} mm, {named(end, strokes)}: nothing meets it there"
-        return Finding("open-outline", "error", message, "Close it in CAD.", layer, 1e3 * p[0], 1e3 * p[1])
+        return finding_at(p, "open-outline", "error", message, "Close it in CAD.", layer)
     q = nodes.ends[partner]
     gap = math.dist(p, q)
     ends = f"{named(end, strokes)} and {named(partner, strokes)}"
@@ -152,9 +148,7 @@ def gap_finding(end: int, partner: int, strokes: Sequence[Stroke], nodes: Nodes)
     fix = "Join them in CAD"
     if gap <= MENDABLE:
         fix += f', or set snap = "{math.ceil(1e6 * gap)} µm"'
-    return Finding(
-        "open-outline", "error", message, fix + ".", layer, 1e3 * p[0], 1e3 * p[1], other_mm=(1e3 * q[0], 1e3 * q[1])
-    )
+    return replace(finding_at(p, "open-outline", "error", message, fix + ".", layer), other_mm=(1e3 * q[0], 1e3 * q[1]))
 
 
 def shown(p: Point) -> str:
@@ -166,10 +160,8 @@ def named(end: int, strokes: Sequence[Stroke]) -> str:
     return f"the {'end' if end % 2 else 'start'} of {strokes[end // 2].source}"
 
 
-# Where do outlines cross themselves, each other, or lie on each other?
-#
-# Joints are snapped before; what crosses less deeply than rounding is a touch. An open chain is asked about itself only: a
-# centre line may cross what it likes.
+# Where outlines cross themselves or each other, or lie on each other. Joints are snapped before; what crosses less deeply than
+# rounding is a touch. An open chain is compared with itself only: a centre line may cross what it likes.
 
 SHALLOW = 10.0 * TIGHT  # metres: crossings less deep, and overlaps shorter, are rounding
 AT_ONCE = 1 << 17  # pairs of edges whose points are worked out in one go
@@ -238,13 +230,14 @@ def crossings(outlines: Sequence[Outline], deviation: float = 0.0) -> list[Findi
         if len(found) >= MOST:
             message = f"more than {MOST} crossings and overlaps; the others were not looked for"
             return [*found, Finding("crowded", "warning", message, "Put different parts on different layers.", name)]
-    return found + [crowd_finding(name, p) for p in crowds]
+    crowd = "so many edges run together near {} mm that not all crossings there were looked for"
+    return found + [finding_at(p, "crowded", "warning", crowd.format(shown(p)), layer=name) for p in crowds]
 
 
 def all_meetings(layer: Layer) -> tuple[Iterator[Meeting], tuple[Point, ...]]:
     """Pairs of edges that meet other than at their common joint, and where there were too many edges to tell."""
     table = table_of(layer.edges)
-    near = near_pairs_of_loops(table, TIGHT)
+    near = near_pairs(table, TIGHT)
     parts = (slice(k, k + AT_ONCE) for k in range(0, len(near.first), AT_ONCE))
     found = (meetings_of(layer, table, near.first[part], near.second[part]) for part in parts)
     return chain.from_iterable(found), near.crowds
@@ -325,13 +318,10 @@ def names(layer: Layer, meeting: Meeting) -> str:
 def crossing_finding(layer: Layer, meeting: Meeting, p: Point) -> Finding:
     itself = layer.owner[meeting.first] == layer.owner[meeting.second]
     loop = layer.outlines[int(layer.owner[meeting.first])].loop
-    what = (
-        ("the outline crosses itself" if loop.closed else "the open chain crosses itself") if itself else "two outlines cross"
-    )
+    what = f"the {'outline' if loop.closed else 'open chain'} crosses itself" if itself else "two outlines cross"
     message = f"{what} at {shown(p)} mm: {names(layer, meeting)}"
     fix = "Trim them there in CAD" + ("." if itself else ", or put them on different layers.")
-    severity = "error" if loop.closed else "warning"
-    return Finding("crossing", severity, message, fix, loop.layer, 1e3 * p[0], 1e3 * p[1])
+    return finding_at(p, "crossing", "error" if loop.closed else "warning", message, fix, loop.layer)
 
 
 def overlap_finding(layer: Layer, meeting: Meeting, p: Point, q: Point) -> Finding:
@@ -340,18 +330,12 @@ def overlap_finding(layer: Layer, meeting: Meeting, p: Point, q: Point) -> Findi
     neighbours = a != b and bool(layer.closed[a] and layer.closed[b])
     message = f"{names(layer, meeting)} lie on each other between {shown(p)} and {shown(q)} mm"
     severity, fix = ("notice", "") if neighbours else ("warning", "Leave only one of them there.")
-    x, y = 0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])
-    return Finding("overlap", severity, message, fix, layer.outlines[a].loop.layer, 1e3 * x, 1e3 * y)
+    place = (0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1]))
+    return finding_at(place, "overlap", severity, message, fix, layer.outlines[a].loop.layer)
 
 
-def crowd_finding(layer: str, p: Point) -> Finding:
-    message = f"so many edges run together near {shown(p)} mm that not all crossings there were looked for"
-    return Finding("crowded", "warning", message, "", layer, 1e3 * p[0], 1e3 * p[1])
-
-
-# Which edges are not intended?
-#
-# Edges without length, edges drawn twice, and slits (a line out and back, of no width) are taken out, each with a finding.
+# Edges without length, edges drawn twice, and slits (a line out and back, of no width) are not intended: they are taken out,
+# each with a finding.
 
 NOTHING = 1e-12  # metres; far below any decimal of a drawing
 SAME = 1e-9  # metres
@@ -371,8 +355,7 @@ def with_length(strokes: Sequence[Stroke]) -> tuple[list[Stroke], list[Finding]]
 
 def at_edge(code: str, message: str, stroke: Stroke) -> Finding:
     """A notice at the middle of a stroke."""
-    x, y = stroke.edge.point(0.5)
-    return Finding(code, "notice", message, "", stroke.layer, 1e3 * x, 1e3 * y)
+    return finding_at(stroke.edge.point(0.5), code, "notice", message, layer=stroke.layer)
 
 
 def unique_loops(outlines: Sequence[Outline]) -> tuple[list[Outline], list[Finding]]:
@@ -386,9 +369,8 @@ def unique_loops(outlines: Sequence[Outline]) -> tuple[list[Outline], list[Findi
         box = extents([loop]) or (0.0, 0.0, 0.0, 0.0)
         near = (k for k in grid.around(box[:2]) if math.dist(boxes[k], box) <= 2.0 * SAME)
         if any(same_loop(kept[k].loop, loop) for k in near):
-            x, y = loop.edges[0].point(0.5)
             message = f"the outline that begins with {outline.sources[0]} is drawn twice; one was left out"
-            findings.append(Finding("duplicate", "notice", message, "", loop.layer, 1e3 * x, 1e3 * y))
+            findings.append(finding_at(loop.edges[0].point(0.5), "duplicate", "notice", message, layer=loop.layer))
             continue
         grid.add(box[:2], len(kept))
         kept.append(outline)
@@ -499,8 +481,6 @@ def slit_from(first: int, tip: int, nodes: Nodes, doubled: Container[int], bridg
     return []
 
 
-# Which outlines nearly coincide?
-
 NEAR = 1e-6  # m: no part has a wall that thin
 SMALL = 0.05  # of an outline's size; for tiny ones that is less
 PROBES = (0.0, 0.5)  # of each edge
@@ -524,7 +504,9 @@ def twins(loops: Sequence[Loop]) -> list[Finding]:
         for other in alike.tolist():
             apart = distance(loops[k], loops[other], near)
             if apart <= near:
-                found.append(finding(loops[k], apart))
+                p = loops[k].edges[0].point(0.5)
+                message = f"two outlines coincide within {1e9 * apart:.3g} nm all along, near {shown(p)} mm"
+                found.append(finding_at(p, "overlap", "error", message, "Leave only one of them.", loops[k].layer))
     return found
 
 
@@ -539,9 +521,3 @@ def distance(one: Loop, other: Loop, enough: float) -> float:
                 if worst > enough:
                     return math.inf
     return worst
-
-
-def finding(loop: Loop, apart: float) -> Finding:
-    x, y = loop.edges[0].point(0.5)
-    message = f"two outlines coincide within {1e9 * apart:.3g} nm all along, near {shown((x, y))} mm"
-    return Finding("overlap", "error", message, "Leave only one of them.", loop.layer, 1e3 * x, 1e3 * y)

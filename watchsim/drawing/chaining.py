@@ -25,23 +25,22 @@ from watchsim.drawing.chain_faults import (
     without_doubles,
     without_slits,
 )
-from watchsim.drawing.findings import Finding, Stroke
+from watchsim.drawing.findings import Finding, Stroke, finding_at
 from watchsim.drawing.nodes import TIGHT, Join, Junctions, Nodes, Outline, junctions
 from watchsim.geometry.loops import Inside, Loop, extents
 from watchsim.geometry.primitives import Arc, Boxes, Edge, Line, Point
 from watchsim.geometry.solids import area
-
-# Which loops are holes?
-#
-# A loop inside an odd number of others of its layer is a hole and runs clockwise; all others run counter-clockwise, so that
-# the material is on the left everywhere.
 
 AT_ONCE = 2_000_000  # pairs of loops that may be looked at in one go, and
 MOST = 30_000_000  # in all: more are a fault in the drawing
 
 
 def nested(loops: Sequence[Loop]) -> list[Loop] | None:
-    """The closed loops of one layer, oriented and with holes marked; same order. None where too many lie in each other."""
+    """The closed loops of one layer, oriented and with holes marked; same order. None where too many lie in each other.
+
+    A loop inside an odd number of others of its layer is a hole and runs clockwise; all others run counter-clockwise, so that
+    the material is on the left everywhere.
+    """
     areas = [area(loop) for loop in loops]
     found = depths(loops, np.abs(areas))
     if found is None:
@@ -86,8 +85,6 @@ def depths(loops: Sequence[Loop], size: NDArray[np.float64]) -> list[int] | None
                     break
     return depth
 
-
-# Which edges form loops?
 
 NOTED = 10.0  # times the snap: gaps up to that are closed, but said
 
@@ -220,7 +217,10 @@ def assembled(strokes: Sequence[Stroke], layer: str, closed: bool) -> Outline:
         following = (k + 1) % count
         if following != k and not (isinstance(edges[k], Arc) and isinstance(edges[following], Arc)):
             joint = joint_of(edges[k], edges[following])
-            edges[k], edges[following] = ending_at(edges[k], joint), starting_at(edges[following], joint)
+            for number, at in ((k, "end"), (following, "start")):
+                edge = edges[number]
+                if isinstance(edge, Line) and getattr(edge, at) != joint:
+                    edges[number] = Line(edge.x0, edge.y0, *joint) if at == "end" else Line(*joint, edge.x1, edge.y1)
     return Outline(Loop(tuple(edges), layer, closed), tuple(stroke.source for stroke in strokes))
 
 
@@ -229,35 +229,23 @@ def joint_of(before: Edge, after: Edge) -> Point:
     p, q = before.end, after.start
     if isinstance(before, Arc):
         return p
-    if isinstance(after, Arc) or p == q:
-        return q
-    return (0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1]))
-
-
-def ending_at(edge: Edge, p: Point) -> Edge:
-    return edge if isinstance(edge, Arc) or edge.end == p else Line(edge.x0, edge.y0, *p)
-
-
-def starting_at(edge: Edge, p: Point) -> Edge:
-    return edge if isinstance(edge, Arc) or edge.start == p else Line(*p, edge.x1, edge.y1)
+    return q if isinstance(after, Arc) or p == q else (0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1]))
 
 
 def closed_gap(join: Join, strokes: Sequence[Stroke]) -> Finding:
     """The notice for a gap that was wider than the snap and was closed all the same."""
     a, b = (strokes[number].source for number in join.strokes)
     message = f"a gap of {1e6 * join.gap:.3g} µm between {a} and {b} was closed"
-    x, y = join.at
-    return Finding("gap-closed", "notice", message, "Join them in CAD.", strokes[join.strokes[0]].layer, 1e3 * x, 1e3 * y)
+    return finding_at(join.at, "gap-closed", "notice", message, "Join them in CAD.", strokes[join.strokes[0]].layer)
 
 
 def branches(nodes: Nodes, meeting: Junctions, strokes: Sequence[Stroke]) -> list[Finding]:
     """An error for each place where more than two edges meet."""
     found = []
     for node, ends in meeting.branches.items():
-        x, y = nodes.at[node]
-        layer = strokes[ends[0] // 2].layer
+        p = nodes.at[node]
         names = ", ".join(dict.fromkeys(strokes[end // 2].source for end in ends[:8]))
-        message = f"{len(ends)} edges meet at {shown((x, y))} mm: {names}; which way does the outline go?"
+        message = f"{len(ends)} edges meet at {shown(p)} mm: {names}; which way does the outline go?"
         fix = "Leave only two of them there, or put the others on another layer."
-        found.append(Finding("branch", "error", message, fix, layer, 1e3 * x, 1e3 * y))
+        found.append(finding_at(p, "branch", "error", message, fix, strokes[ends[0] // 2].layer))
     return found

@@ -1,7 +1,7 @@
-"""How does a bore that was drawn on a layer of its own lie to the outlines of a plate?
+"""Which outlines are circles, which curves are drawn with straight pieces, and how do bores lie to the outlines of a plate?
 
-Wholly in material, wholly in none, or across an outline: then what is missing must be drawn in the outline itself. Touching
-is no crossing, so a slot may reach the border.
+A bore that was drawn on a layer of its own lies wholly in material, wholly in none, or across an outline: then what is missing
+must be drawn in the outline itself. Touching is no crossing, so a slot may reach the border.
 """
 
 from __future__ import annotations
@@ -15,16 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.drawing.chain_faults import SHALLOW, Layer, all_meetings, crosses
-from watchsim.drawing.findings import Finding
+from watchsim.drawing.findings import Finding, finding_at
 from watchsim.drawing.material import MARKS, last_word
 from watchsim.drawing.nodes import Outline
 from watchsim.geometry.loops import Inside, Loop, extents
 from watchsim.geometry.primitives import Arc, Boxes, Line, Point
 from watchsim.geometry.solids import area
-
-# Which outlines of a drawing are circles, where are their centres, and how large are they?
-#
-# In one piece, or in several arcs of one centre, as programs that know no circles draw them.
 
 SAME = 1e-9  # m: centres and radii this close are one
 SHOWN = 8  # circles of a layer written out
@@ -38,12 +34,10 @@ class Circle(NamedTuple):
 
 
 def circle_of(loop: Loop) -> Circle | None:
-    """The circle that a closed outline is; None where it is none."""
+    """The circle that a closed outline is, in one piece or in arcs of one centre; None where it is none."""
     first = loop.edges[0]
-    if not loop.closed or not isinstance(first, Arc):
+    if not loop.closed or not isinstance(first, Arc) or (len(loop.edges) == 1 and not first.is_circle):
         return None
-    if len(loop.edges) == 1:
-        return Circle((first.x, first.y), first.radius) if first.is_circle else None
     for edge in loop.edges:
         if not isinstance(edge, Arc) or abs(edge.radius - first.radius) > SAME:
             return None
@@ -90,8 +84,6 @@ def _mm(value: float) -> str:
     return f"{round(1e3 * value, 6) + 0.0:.6g}"
 
 
-# Is this curve drawn with straight pieces, and how far off are they?
-#
 # Facets are not arcs: a locking face of facets pushes in steps. They are imported as drawn. Where they leave the smooth curve
 # through their corners by more than a fitted curve may, they are reported, once for each outline.
 
@@ -182,15 +174,11 @@ def facet_finding(loop: Loop, off: list[Row]) -> Finding:
     curve = f"an arc of radius {1e3 * float(np.median(radii)):.4g} mm" if equal else "a curve"
     if len(off) > 1:
         curve = f"curves at {len(off)} places"
-    message = (
-        f"{pieces} straight pieces stand for {curve} (up to {1e6 * worst.rise:.3g} µm off); contacts run over their corners"
-    )
+    off_by = f"up to {1e6 * worst.rise:.3g} µm off"
+    message = f"{pieces} straight pieces stand for {curve} ({off_by}); contacts run over their corners"
     fix = f"Draw {'ARCs or CIRCLEs' if len(off) > 1 else 'an ARC or CIRCLE' if equal else 'a SPLINE or ARCs'} instead."
-    x, y = worst.place
-    return Finding("facets", "warning", message, fix, loop.layer, 1e3 * x, 1e3 * y)
+    return finding_at(worst.place, "facets", "warning", message, fix, loop.layer)
 
-
-# How does a bore that was drawn on a layer of its own lie to the outlines of a plate?
 
 DEEPER = 4.0  # than what crosses without being a crossing: a point that far inside is inside
 

@@ -1,19 +1,20 @@
 """Which arcs follow the curves of a drawing?
 
-All curves at once: thousands of them take little longer than a few.
+All curves at once: thousands of them take little longer than a few. Drawing programs write circles as four cubics whose
+handles are 0.5523 radii long; these leave the circle by 2.7e-4 of the radius. Where that is within the tolerance the circle is
+meant and drawn; where it is more, the curves are followed as drawn.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import groupby, pairwise
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from watchsim.drawing.findings import Finding, Stroke
+from watchsim.drawing.findings import Stroke, finding_at
 from watchsim.drawing.projection import (
     ROUNDING,
     Conic,
@@ -31,18 +32,11 @@ from watchsim.drawing.projection import (
     reach,
 )
 from watchsim.drawing.splines import SAME, Follower
-from watchsim.geometry.biarcs import Array as Array_of_biarcs
-from watchsim.geometry.biarcs import Curve
+from watchsim.geometry.biarcs import Array, Curve
 from watchsim.geometry.fitting import Fit, fit_all
 from watchsim.geometry.primitives import TURN, Arc, Edge, moved, reflected
-from watchsim.geometry.recognition import joined as joined_of_recognition
+from watchsim.geometry.recognition import put_together
 
-# Is this row of Bézier curves a circle or an arc, and what else becomes of it?
-#
-# Drawing programs write circles as four cubics whose handles are 0.5523 radii long. These leave the circle by 2.7e-4 of the
-# radius. Where that is within the tolerance the circle is meant and drawn; where it is more, the curves are followed as drawn.
-
-Array = NDArray[np.float64]
 SAMPLES = 16  # per curve; those of a circle have two humps
 SLACK = 0.01  # of the tolerance: curves that meet nearly smoothly may be moved so much
 WIDEST = 1e6  # of the first curve's range of the parameter
@@ -77,7 +71,7 @@ def emit_row(found: Gathering, shapes: Sequence[Shape], layer: str, source: str)
             continue
         curves = [shape for shape in row if isinstance(shape, Spline)]
         if not _round(found, curves, layer, source):
-            for chain in joined(curves, SLACK * found.tolerance / found.scale):
+            for chain in chained(curves, SLACK * found.tolerance / found.scale):
                 emit(found, chain.spline, layer, source, chain.curves, found.scale * chain.moved)
 
 
@@ -106,7 +100,7 @@ def _bezier_point(curve: Spline, t: float) -> Vector:
     return (x, y, 0.0)
 
 
-def joined(row: Sequence[Spline], slack: float) -> list[Chain]:
+def chained(row: Sequence[Spline], slack: float) -> list[Chain]:
     """Béziers that follow each other smoothly as one spline each, so that arcs can run across where they meet.
 
     Two cubics whose handles at their common point lie on one line are a cubic spline with a double knot there, if their
@@ -190,7 +184,7 @@ def _round(found: Gathering, row: Sequence[Spline], layer: str, source: str) -> 
         f"{1e6 * circle.deviation:.3g} µm; it is followed as drawn"
     )
     fix = "Draw it as a circle, or allow a larger fit."
-    found.findings.append(Finding("near-circle", "notice", message, fix, layer, 1e3 * circle.arc.x, 1e3 * circle.arc.y))
+    found.findings.append(finding_at((circle.arc.x, circle.arc.y), "near-circle", "notice", message, fix, layer))
     return False
 
 
@@ -233,7 +227,7 @@ def bezier_points(spline: Spline) -> Array:
     return sum(math.comb(n, k) * t**k * (1.0 - t) ** (n - k) * control[k] for k in range(n + 1))
 
 
-# Which arcs follow these ellipses?
+# Ellipses are cut at the ends of their axes.
 
 QUARTER = 0.5 * math.pi
 SLIVER = 0.02  # radians of the parameter
@@ -254,7 +248,7 @@ def ellipses_edges(conics: Sequence[Conic], scale: float, tolerances: Sequence[f
     """
     curves: list[Curve] = []
     limits: list[float] = []
-    plans: list[tuple[Array_of_biarcs, Array_of_biarcs, list[Stretch]]] = []
+    plans: list[tuple[Array, Array, list[Stretch]]] = []
     for conic, tolerance in zip(conics, tolerances, strict=True):
         first, cuts = axis_cuts(conic)
         c, s = math.cos(first), math.sin(first)
@@ -275,28 +269,23 @@ def ellipses_edges(conics: Sequence[Conic], scale: float, tolerances: Sequence[f
         plans.append((a, b, stretches))
     fits = fit_all(curves, limits)
     return [
-        _put_together(scale * np.array(conic.centre[:2]), plan, fits, tolerance)
+        _placed(scale * np.array(conic.centre[:2]), plan, fits, tolerance)
         for conic, plan, tolerance in zip(conics, plans, tolerances, strict=True)
     ]
 
 
-def _put_together(
-    centre: Array_of_biarcs, plan: tuple[Array_of_biarcs, Array_of_biarcs, list[Stretch]], fits: Sequence[Fit], tolerance: float
-) -> Fit:
+def _placed(centre: Array, plan: tuple[Array, Array, list[Stretch]], fits: Sequence[Fit], tolerance: float) -> Fit:
     """The edges of all stretches of one ellipse."""
     a, b, stretches = plan
     x, y = centre.tolist()
-    edges: list[Edge] = []
-    worst = 0.0
+    parts = []
     for curve, quadrant in stretches:
-        fit = fits[curve]
-        edges += [moved(edge, 0.0, (x, y)) for edge in (fit.edges if quadrant is None else in_quadrant(fit, a, b, quadrant))]
-        worst = max(worst, fit.deviation)
-    edges, shift = joined_of_recognition(edges, tolerance - worst)
-    return Fit(tuple(edges), worst + shift)
+        edges = fits[curve].edges if quadrant is None else in_quadrant(fits[curve], a, b, quadrant)
+        parts.append(Fit(tuple(moved(edge, 0.0, (x, y)) for edge in edges), fits[curve].deviation))
+    return put_together(parts, tolerance)
 
 
-def rational(a: Array_of_biarcs, b: Array_of_biarcs, low: float, high: float) -> Curve:
+def rational(a: Array, b: Array, low: float, high: float) -> Curve:
     """a·cos t + b·sin t from `low` to at most a quarter turn later, as a rational parabola in the tangent of half the angle."""
     half = 0.5 * (high - low)
     angles, weights = np.array([low, low + half, high]), np.array([1.0, math.cos(half), 1.0])
@@ -305,7 +294,7 @@ def rational(a: Array_of_biarcs, b: Array_of_biarcs, low: float, high: float) ->
     return Curve(np.column_stack((points * weights[:, None], weights))[None], np.array([0.0, 1.0]))
 
 
-def in_quadrant(fit: Fit, a: Array_of_biarcs, b: Array_of_biarcs, number: int) -> list[Edge]:
+def in_quadrant(fit: Fit, a: Array, b: Array, number: int) -> list[Edge]:
     """The edges of the first quadrant mirrored in the axes into quadrant 0 to 3, in travel order."""
     edges = list(fit.edges)
     if number in (1, 2):
@@ -315,7 +304,7 @@ def in_quadrant(fit: Fit, a: Array_of_biarcs, b: Array_of_biarcs, number: int) -
     return edges if number in (0, 2) else [edge.reversed() for edge in reversed(edges)]
 
 
-def mirrored(edge: Edge, axis: Array_of_biarcs) -> Edge:
+def mirrored(edge: Edge, axis: Array) -> Edge:
     """The mirror image with the component along `axis` turned round."""
     nx, ny = (axis / math.hypot(*axis)).tolist()
     return reflected(edge, (0.0, 0.0), (-ny, nx))
@@ -338,8 +327,6 @@ def axis_cuts(conic: Conic) -> tuple[float, list[float]]:
     return first, [*cuts, stop]
 
 
-# Which arcs follow the curves of a drawing?
-
 AT_ONCE = 4096  # curves: then it is looked whether they become too many pieces
 
 
@@ -356,29 +343,21 @@ def follow(found: Gathering) -> None:
             taken = curve.before
             strokes += [Stroke(edge, curve.layer, curve.source, curve.run) for edge in fit.edges]
             if fitted:
-                _count(found, curve, fit)
+                found.curves += curve.curves
+                found.arcs += sum(isinstance(edge, Arc) for edge in fit.edges)
+                found.deviation = max(found.deviation, fit.deviation + curve.moved)
+                if fit.deviation > curve.limit * (1.0 + SAME):
+                    cannot_follow(found, curve, fit.deviation)
         if len(strokes) > found.most:
             raise TooLarge
     found.strokes = strokes + found.strokes[taken:]
 
 
-def _count(found: Gathering, curve: Waiting, fit: Fit) -> None:
-    found.curves += curve.curves
-    found.arcs += sum(isinstance(edge, Arc) for edge in fit.edges)
-    found.deviation = max(found.deviation, fit.deviation + curve.moved)
-    if fit.deviation > curve.limit * (1.0 + SAME):
-        cannot_follow(found, curve, fit.deviation)
-
-
-def _fits(waiting: Sequence[Waiting], follower: Follower) -> list[tuple[Fit, bool]]:
+def _fits(waiting: Sequence[Waiting], follower: Follower) -> Iterator[tuple[Fit, bool]]:
     """Lines and arcs for each curve, and whether anything had to be fitted."""
-    splines = [(k, curve.shape, curve.limit) for k, curve in enumerate(waiting) if isinstance(curve.shape, Spline)]
-    conics = [(k, forward(curve.shape), curve.limit) for k, curve in enumerate(waiting) if isinstance(curve.shape, Conic)]
-    result = [(Fit((), 0.0), False)] * len(waiting)
-    followed = follower.edges([shape for _, shape, _ in splines], [limit for _, _, limit in splines])
-    for (k, _, _), fit in zip(splines, followed, strict=True):
-        result[k] = fit
-    rounded = ellipses_edges([shape for _, shape, _ in conics], follower.scale, [limit for _, _, limit in conics])
-    for (k, _, _), ellipse in zip(conics, rounded, strict=True):
-        result[k] = ellipse, True
-    return result
+    splines = [(curve.shape, curve.limit) for curve in waiting if isinstance(curve.shape, Spline)]
+    conics = [(forward(curve.shape), curve.limit) for curve in waiting if isinstance(curve.shape, Conic)]
+    followed = iter(follower.edges([shape for shape, _ in splines], [limit for _, limit in splines]))
+    rounded = iter(ellipses_edges([shape for shape, _ in conics], follower.scale, [limit for _, limit in conics]))
+    for curve in waiting:
+        yield next(followed) if isinstance(curve.shape, Spline) else (next(rounded), True)

@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from watchsim.drawing.findings import Drawn, Finding
+from watchsim.drawing.findings import Facts
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.solids import MassProperties, Section, mass_properties, section
-
-# What is the outline of a flat part, apart from the file it was drawn in?
-#
-# The form in which outlines are exchanged with other programs: lines and arcs stay lines and arcs.
 
 SNAP = 1e-6  # m
 Path2D = Any  # a trimesh.path.Path2D
@@ -21,7 +17,10 @@ Path2D = Any  # a trimesh.path.Path2D
 
 @dataclass(frozen=True)
 class Profile:
-    """Closed `loops` (outer ones counter-clockwise, holes clockwise) and open `chains`, in metres."""
+    """Closed `loops` (outer ones counter-clockwise, holes clockwise) and open `chains`, in metres, apart from any file.
+
+    Outlines are exchanged with other programs in this form: lines and arcs stay lines and arcs.
+    """
 
     loops: tuple[Loop, ...] = ()
     chains: tuple[Loop, ...] = ()
@@ -91,42 +90,14 @@ def _scale(path: Path2D, units: str | None) -> float:
     return unit.factor
 
 
-# What does a drawing hold once it is read?
-
-
 @dataclass(frozen=True)
-class Drawing:
-    """Everything read from one file. Lengths are metres, in the coordinates of the drawing.
+class Drawing(Facts):
+    """Everything read from one file: closed `loops`, material on the left, `open_chains`, and the `layers` with geometry."""
 
-    format          "dxf" or "svg"
-    units           as the file (or the caller) gave it; None where neither did: lengths are then what they would be in
-                    millimetres, and a finding of severity "error" says so
-    units_from      "header", "option" or "page"; None when unknown
-    loops           closed outlines, material on the left
-    open_chains     outlines that do not close
-    points          (layer, x, y) of each
-    layers          all visible layers with geometry
-    fitted_curves, fitted_arcs, fitted_deviation  curves followed by arcs, how many arcs, and a bound of their deviation (m)
-    ignored         what was not read, by kind
-    drawn           what the file holds before doubles are taken out and curves are fitted
-    data            the file itself, byte by byte
-    """
-
-    path: Path
-    format: str
-    units: str | None
-    units_from: str | None
-    loops: tuple[Loop, ...]
+    path: Path = Path()
+    loops: tuple[Loop, ...] = ()
     open_chains: tuple[Loop, ...] = ()
-    points: tuple[tuple[str, float, float], ...] = ()
     layers: tuple[str, ...] = ()
-    fitted_curves: int = 0
-    fitted_arcs: int = 0
-    fitted_deviation: float = 0.0
-    ignored: dict[str, int] = field(default_factory=dict)
-    drawn: Drawn = field(default_factory=Drawn)
-    findings: tuple[Finding, ...] = ()
-    data: bytes = field(default=b"", repr=False, compare=False)
 
     def __repr__(self) -> str:
         return f"<Drawing {self.path.name!r}, {len(self.findings)} findings: {self.profile!r}>"

@@ -25,7 +25,7 @@ from watchsim.drawing.dxf_records import (
     read_tags,
     strange_codes,
 )
-from watchsim.drawing.findings import INSUNITS, Content, Finding, Inserted, named_length
+from watchsim.drawing.findings import INSUNITS, Content, Finding, Inserted, named_length, words
 from watchsim.drawing.projection import (
     IDENTITY,
     MOST_COPIES,
@@ -51,10 +51,8 @@ from watchsim.drawing.projection import (
 from watchsim.drawing.splines import spline_from
 from watchsim.geometry.primitives import TURN
 
-# What does one DXF entity draw?
-#
-# Each reader takes a record and gives shapes in world coordinates and drawing units. Group codes after the DXF reference
-# (Autodesk); missing or doubled coordinates raise DxfError instead of becoming zero.
+# Each reader of an entity takes a record and gives shapes in world coordinates and drawing units. Group codes after the DXF
+# reference (Autodesk); missing or doubled coordinates raise DxfError instead of becoming zero.
 
 UP: Vector = (0.0, 0.0, 1.0)
 CLOSED, SPLINE_FIT, MESH, FRAME_POINT, SPACE_POLYLINE = 1, 4, 16 | 64, 16, 8
@@ -144,10 +142,6 @@ def heavyweight(record: Record, vertices: Sequence[Record]) -> list[Shape]:
     return traced(flat, bool(flags & CLOSED), plane_of(record))
 
 
-def is_mesh(record: Record) -> bool:
-    return record.kind == "POLYLINE" and bool(record.integer(70) & MESH)
-
-
 def traced(corners: list[tuple[Vector, float]], closed: bool, plane: Affine) -> list[Shape]:
     """The segments from corner to corner; a corner's bulge belongs to the segment that leaves it. One corner alone gives a
     segment without length, so that it is not left out in silence."""
@@ -213,7 +207,7 @@ def insert(record: Record, most: int) -> Insert:
     return Insert(record.text(2), tuple(place.after(shifted(offset)).after(form) for offset in offsets))
 
 
-# Does this record look damaged, though it can be read?
+# Some records look damaged, though they can be read.
 
 
 def swallowed(record: Record, following: Record | None, layer: str) -> list[Finding]:
@@ -239,45 +233,29 @@ def strange_groups(record: Record, layer: str) -> list[Finding]:
     return [Finding("strange-group", "warning", message, "Check its shape.", layer)]
 
 
-def odd_copies(record: Record, layer: str) -> list[Finding]:
-    """An INSERT without rows or columns."""
-    counts = ((record.integer(code, 1), what, code) for code, what in ((70, "columns"), (71, "rows")))
-    return [
-        Finding(
-            "strange-group",
-            "warning",
-            f"{record.name} has {count} {what} (group {code}); one is read",
-            "Insert it again.",
-            layer,
-        )
-        for count, what, code in counts
-        if count < 1
-    ]
+def odd_numbers(record: Record, layer: str) -> list[Finding]:
+    """An INSERT without rows or columns; a negative radius."""
+    found = []
+    counts = ((70, "columns"), (71, "rows")) if record.kind == "INSERT" else ()
+    for code, what in counts:
+        if (count := record.integer(code, 1)) < 1:
+            message = f"{record.name} has {count} {what} (group {code}); one is read"
+            found.append(Finding("strange-group", "warning", message, "Insert it again.", layer))
+    if record.kind in ("CIRCLE", "ARC") and record.number(40) < 0.0:
+        message = f"the radius of {record.name} is {record.number(40):g}; it is read without its sign"
+        found.append(Finding("negative-radius", "warning", message, "Draw it again.", layer))
+    return found
 
 
-def odd_radius(record: Record, layer: str) -> list[Finding]:
-    """A negative one."""
-    if record.kind not in ("CIRCLE", "ARC") or record.number(40) >= 0.0:
-        return []
-    message = f"the radius of {record.name} is {record.number(40):g}; it is read without its sign"
-    return [Finding("negative-radius", "warning", message, "Draw it again.", layer)]
-
-
-# What was left out, and does it matter?
-
-TEXT_LIKE = frozenset(
-    (
-        *("TEXT", "MTEXT", "RTEXT", "ATTRIB", "ATTDEF", "DIMENSION", "ARC_DIMENSION", "LARGE_RADIAL_DIMENSION", "TOLERANCE"),
-        *("LEADER", "MULTILEADER", "MLEADER", "VIEWPORT", "HATCH", "IMAGE", "WIPEOUT", "ACAD_TABLE", "OLEFRAME", "OLE2FRAME"),
-    )
+# Types that are not read: without an outline, and with one.
+TEXT_LIKE = words(
+    """TEXT MTEXT RTEXT ATTRIB ATTDEF DIMENSION ARC_DIMENSION LARGE_RADIAL_DIMENSION TOLERANCE LEADER MULTILEADER MLEADER
+    VIEWPORT HATCH IMAGE WIPEOUT ACAD_TABLE OLEFRAME OLE2FRAME"""
 )
-KNOWN_BUT_NOT_READ = frozenset(
-    (
-        *("POLYLINE", "3DFACE", "SOLID", "TRACE", "MLINE", "REGION", "BODY", "3DSOLID", "MESH", "RAY", "XLINE", "SHAPE"),
-        *("SURFACE", "EXTRUDEDSURFACE", "LOFTEDSURFACE", "REVOLVEDSURFACE", "SWEPTSURFACE", "PLANESURFACE", "HELIX"),
-        *("UNDERLAY", "PDFUNDERLAY", "DWFUNDERLAY", "DGNUNDERLAY", "LIGHT", "SUN", "POINTCLOUD", "GEOPOSITIONMARKER"),
-        *("ACAD_PROXY_ENTITY", "SECTION"),
-    )
+KNOWN_BUT_NOT_READ = words(
+    """POLYLINE 3DFACE SOLID TRACE MLINE REGION BODY 3DSOLID MESH RAY XLINE SHAPE SURFACE EXTRUDEDSURFACE LOFTEDSURFACE
+    REVOLVEDSURFACE SWEPTSURFACE PLANESURFACE HELIX UNDERLAY PDFUNDERLAY DWFUNDERLAY DGNUNDERLAY LIGHT SUN POINTCLOUD
+    GEOPOSITIONMARKER ACAD_PROXY_ENTITY SECTION"""
 )
 
 
@@ -291,9 +269,7 @@ def left_out(found: Gathering, layers: dict[str, Layer]) -> list[Finding]:
     if found.tilted:
         message = f"{found.tilted} pieces are not parallel to the drawing plane; their projection is used"
         result.append(Finding("tilted", "warning", message))
-    for kind, count in found.ignored.items():
-        result.append(_ignored(kind, count))
-    return result
+    return [*result, *(_ignored(kind, count) for kind, count in found.ignored.items())]
 
 
 def _ignored(kind: str, count: int) -> Finding:
@@ -305,10 +281,7 @@ def _ignored(kind: str, count: int) -> Finding:
     return Finding("ignored", "warning", message)
 
 
-# Which lines and arcs does this DXF file hold?
-
 DEEPEST = 32  # blocks within blocks
-MISSING = ("block-missing", "is not in the file")
 
 
 @dataclass(frozen=True, slots=True)
@@ -345,19 +318,8 @@ def read_dxf(data: bytes, units: str | None, fit: float) -> Content:
         fix = "Look for curves made of points, and for arrays of blocks with huge counts."
         refusal = Finding("too-large", "error", message, fix)
         return Content(units=name, units_from=origin, findings=(*notes, *sections.findings, refusal))
-    return Content(
-        strokes=tuple(found.strokes),
-        points=tuple(found.points),
-        units=name,
-        units_from=origin,
-        fitted_curves=found.curves,
-        fitted_arcs=found.arcs,
-        fitted_deviation=found.deviation,
-        ignored=dict(found.ignored),
-        drawn=found.drawn(),
-        inserted=tuple(found.inserted),
-        findings=(*notes, *sections.findings, *found.findings, *left_out(found, sections.layers)),
-    )
+    findings = (*notes, *sections.findings, *found.findings, *left_out(found, sections.layers))
+    return found.content(name, origin, findings)
 
 
 def _unit_of(code: int, stated: tuple[str, float] | None) -> tuple[str | None, float, str | None, list[Finding]]:
@@ -411,14 +373,14 @@ class Walker:
             self.found.findings += strange_groups(record, layer)
         try:
             if head.kind == "INSERT":
-                self.found.findings += odd_copies(head, layer)
+                self.found.findings += odd_numbers(head, layer)
                 return Item(layer, head.name, insert=insert(head, MOST_COPIES))
-            if head.kind == "POLYLINE" and not is_mesh(head):
+            if head.kind == "POLYLINE" and not head.integer(70) & MESH:
                 return Item(layer, head.name, tuple(heavyweight(head, vertices)))
             if head.kind in READERS and vertices:
                 raise DxfError("VERTEX records follow it that belong to no POLYLINE")
             if head.kind in READERS:
-                self.found.findings += odd_radius(head, layer)
+                self.found.findings += odd_numbers(head, layer)
                 return Item(layer, head.name, tuple(READERS[head.kind](head)))
         except DxfError as error:
             message = f"{head.name} at {head.place} cannot be read: {error}. It is left out."
@@ -449,9 +411,14 @@ class Walker:
     def _unfold(self, item: Item, reference: Insert, layer: str, affine: Affine, path: tuple[str, ...]) -> None:
         name = reference.block.lower()
         block = self.sections.blocks.get(name)
-        fault = MISSING if block is None else _unusable(block, path)
-        if block is None or fault is not None:
-            code, why = fault or MISSING
+        code, why = "", ""
+        if block is None:
+            code, why = "block-missing", "is not in the file"
+        elif name in path or len(path) >= DEEPEST:
+            code, why = "block-loop", "contains itself" if name in path else "is nested too deeply"
+        elif not block.entities and block.head.text(1):
+            code, why = "external", f'is drawn in another file, "{block.head.text(1)}", which is not read'
+        if block is None or code:
             message = f'block "{reference.block}" {why}; {item.source} is left out'
             self.found.findings.append(Finding(code, "error", message, "", layer))
             return
@@ -483,17 +450,6 @@ class Walker:
             self.found.findings.append(Finding("damaged", "error", message))
             return IDENTITY
         return shifted((-x, -y, -z))
-
-
-def _unusable(block: Block, path: tuple[str, ...]) -> tuple[str, str] | None:
-    """Code and reason for a block that cannot be unfolded inside those of `path`."""
-    if block.head.text(2).lower() in path:
-        return "block-loop", "contains itself"
-    if len(path) >= DEEPEST:
-        return "block-loop", "is nested too deeply"
-    if not block.entities and block.head.text(1):
-        return "external", f'is drawn in another file, "{block.head.text(1)}", which is not read'
-    return None
 
 
 def _grouped(records: Iterable[Record]) -> Iterable[tuple[Record, list[Record]]]:

@@ -10,9 +10,7 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
-from watchsim.drawing.findings import Finding
-
-# Which records does this DXF file hold?
+from watchsim.drawing.findings import Finding, words
 
 BINARY_MARK = b"AutoCAD Binary DXF"
 LARGEST = 1e11  # drawing units; larger numbers are damage, and squares of them would lose the small ones
@@ -141,8 +139,8 @@ def _text_pairs(text: str) -> tuple[list[int], list[object], str, str]:
     except ValueError:
         at = 2 * len(codes)
         if not codes:
-            told = f'this is not a DXF file: it begins with "{_printable(lines[0])}"'
-            raise DxfError(f"{told}. Save the drawing as DXF in CAD; another ending does not make it one") from None
+            fault = f'this is not a DXF file: it begins with "{_printable(lines[0])}"'
+            raise DxfError(f"{fault}. Save the drawing as DXF in CAD; another ending does not make it one") from None
         return codes, values, f'line {at + 1} reads "{_printable(lines[at])}" where a group code belongs', "line"
     return codes, values, "", "line"
 
@@ -188,10 +186,8 @@ def _grouped(codes: list[int], values: list[object], fault: str, word: str) -> T
     return Tags(tuple(records), fault or "the file ends without EOF: it is incomplete")
 
 
-# Which group codes may an entity have?
-#
-# A code that does not belong there is the trace of a damaged file: a coordinate may have gone astray with it. Codes after
-# the DXF reference (Autodesk), those of old versions included.
+# Group codes that an entity may have, after the DXF reference (Autodesk), those of old versions included. Another one is the
+# trace of a damaged file: a coordinate may have gone astray with it.
 
 EXTENDED = 1000  # from here on: data of applications, which may hold anything
 COMMON = frozenset(
@@ -217,21 +213,12 @@ OWN = {
 
 def strange_codes(record: Record) -> list[int]:
     """The codes that do not belong to this type of entity, ascending."""
-    own = OWN.get(record.kind)
-    if own is None:
-        return []
-    return sorted(code for code in set(record.codes) - COMMON - own if code < EXTENDED)
+    strange = set(record.codes) - COMMON - OWN[record.kind] if record.kind in OWN else ()
+    return sorted(code for code in strange if code < EXTENDED)
 
 
-# Which parts does this DXF file have?
-#
-# Header variables, layers, blocks and the entities of model space, found in the list of records. Old and minimal files have
-# entities only.
-
-SECTIONS = frozenset(("HEADER", "CLASSES", "TABLES", "BLOCKS", "ENTITIES", "OBJECTS", "THUMBNAILIMAGE", "ACDSDATA"))
-DRAWN = frozenset(
-    ("LINE", "POINT", "CIRCLE", "ARC", "ELLIPSE", "LWPOLYLINE", "SPLINE", "POLYLINE", "VERTEX", "SEQEND", "INSERT", "TEXT")
-)
+SECTIONS = words("HEADER CLASSES TABLES BLOCKS ENTITIES OBJECTS THUMBNAILIMAGE ACDSDATA")
+DRAWN = words("LINE POINT CIRCLE ARC ELLIPSE LWPOLYLINE SPLINE POLYLINE VERTEX SEQEND INSERT TEXT")
 OF_SECTION = frozenset((2, 999))  # groups of the record that begins a section
 FROZEN = 1
 
@@ -265,7 +252,10 @@ class Sections:
 
 
 def divide(tags: Tags) -> Sections:
-    """The sections of a file. Whatever is incomplete becomes a finding of severity "error"."""
+    """Header variables, layers, blocks and the entities of model space; old and minimal files have entities only.
+
+    Whatever is incomplete becomes a finding of severity "error".
+    """
     findings: list[Finding] = []
     parts = _sections(tags, findings)
     insunits = 0

@@ -11,55 +11,36 @@ from dataclasses import dataclass, field
 from watchsim.geometry.primitives import Edge, Point
 from watchsim.units import LENGTH, UnitError, known_unit
 
-# How long is one unit of this drawing?
-#
-# $INSUNITS says it by a code; the caller may say it by a name.
-
 FOOT, SURVEY_FOOT = 0.3048, 1200.0 / 3937.0
-INSUNITS: dict[int, tuple[str, float]] = {
-    1: ("inch", 0.0254),
-    2: ("ft", FOOT),
-    3: ("mile", 5280.0 * FOOT),
-    4: ("mm", 1e-3),
-    5: ("cm", 1e-2),
-    6: ("m", 1.0),
-    7: ("km", 1e3),
-    8: ("microinch", 2.54e-8),
-    9: ("mil", 2.54e-5),
-    10: ("yard", 3.0 * FOOT),
-    11: ("angstrom", 1e-10),
-    12: ("nm", 1e-9),
-    13: ("µm", 1e-6),
-    14: ("dm", 1e-1),
-    15: ("dam", 1e1),
-    16: ("hm", 1e2),
-    17: ("Gm", 1e9),
-    18: ("au", 149597870700.0),
-    19: ("light-year", 9460730472580800.0),
-    20: ("parsec", 3.0856775814913673e16),
-    21: ("US survey ft", SURVEY_FOOT),
-    22: ("US survey inch", SURVEY_FOOT / 12.0),
-    23: ("US survey yard", 3.0 * SURVEY_FOOT),
-    24: ("US survey mile", 5280.0 * SURVEY_FOOT),
-}
+# Name and metres of one unit of a drawing by its code in $INSUNITS, from 1 on; the caller may say it by the name.
+UNITS = (
+    *(("inch", 0.0254), ("ft", FOOT), ("mile", 5280.0 * FOOT), ("mm", 1e-3), ("cm", 1e-2), ("m", 1.0), ("km", 1e3)),
+    *(("microinch", 2.54e-8), ("mil", 2.54e-5), ("yard", 3.0 * FOOT), ("angstrom", 1e-10), ("nm", 1e-9), ("µm", 1e-6)),
+    *(("dm", 1e-1), ("dam", 1e1), ("hm", 1e2), ("Gm", 1e9), ("au", 149597870700.0), ("light-year", 9460730472580800.0)),
+    *(("parsec", 3.0856775814913673e16), ("US survey ft", SURVEY_FOOT), ("US survey inch", SURVEY_FOOT / 12.0)),
+    *(("US survey yard", 3.0 * SURVEY_FOOT), ("US survey mile", 5280.0 * SURVEY_FOOT)),
+)
+INSUNITS: dict[int, tuple[str, float]] = dict(enumerate(UNITS, 1))
 
 
 def named_length(name: str) -> tuple[str, float]:
     """The unit of that name as (usual spelling, metres); ValueError where it is not a unit of length."""
-    for known, metres in INSUNITS.values():
-        if name.strip() == known:
-            return known, metres
+    if (metres := dict(UNITS).get(name.strip())) is not None:
+        return name.strip(), metres
     try:
         unit = known_unit(name.strip())
     except UnitError:
         raise ValueError(f'"{name}" is not a unit known here. Write "mm" or "inch"') from None
     if unit.powers not in LENGTH.powers:
         raise ValueError(f'"{name}" is not a unit of length. Write "mm" or "inch"')
-    usual = {metres: known for known, metres in INSUNITS.values()}
+    usual = {metres: known for known, metres in UNITS}
     return usual.get(unit.factor, name.strip()), unit.factor
 
 
-# What was wrong with the drawing or the scene?
+def words(text: str) -> frozenset[str]:
+    """A set of words that is written as a text."""
+    return frozenset(text.split())
+
 
 ORDER = ("error", "warning", "notice")  # the gravest first
 
@@ -86,9 +67,9 @@ class Finding:
         return {name: getattr(self, name) for name in names}
 
 
-# What comes out of a file before it is chained?
-#
-# The same for every format: single lines and arcs in metres, each with its layer and the name of the entity that drew it.
+def finding_at(p: Point, code: str, severity: str, message: str, fix: str = "", layer: str | None = None) -> Finding:
+    """One that has a place (metres)."""
+    return Finding(code, severity, message, fix, layer, 1e3 * p[0], 1e3 * p[1])
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,19 +106,36 @@ class Inserted:
 
 
 @dataclass(frozen=True)
-class Content:
-    """Everything a reader found in one file; the fields are those of Drawing."""
+class Facts:
+    """What is known of a drawing from its file alone. Lengths are metres, in the coordinates of the drawing.
+
+    format          "dxf" or "svg"
+    units           as the file (or the caller) gave it; None where neither did: lengths are then what they would be in
+                    millimetres, and a finding of severity "error" says so
+    units_from      "header", "option" or "page"; None when unknown
+    points          (layer, x, y) of each
+    fitted_curves, fitted_arcs, fitted_deviation  curves followed by arcs, how many arcs, and a bound of their deviation (m)
+    ignored         what was not read, by kind
+    drawn           what the file holds before doubles are taken out and curves are fitted
+    data            the file itself, byte by byte
+    """
 
     format: str = ""
-    strokes: tuple[Stroke, ...] = ()
-    points: tuple[tuple[str, float, float], ...] = ()
     units: str | None = None
     units_from: str | None = None
+    points: tuple[tuple[str, float, float], ...] = ()
     fitted_curves: int = 0
     fitted_arcs: int = 0
     fitted_deviation: float = 0.0
     ignored: dict[str, int] = field(default_factory=dict)
     drawn: Drawn = field(default_factory=Drawn)
-    inserted: tuple[Inserted, ...] = ()
     findings: tuple[Finding, ...] = ()
     data: bytes = field(default=b"", repr=False, compare=False)
+
+
+@dataclass(frozen=True)
+class Content(Facts):
+    """Everything a reader found in one file, before it is chained: the same for every format."""
+
+    strokes: tuple[Stroke, ...] = ()
+    inserted: tuple[Inserted, ...] = ()

@@ -18,11 +18,11 @@ from watchsim.geometry.loops import Box, Loop, extents, total_length
 from watchsim.geometry.primitives import Arc, Point
 from watchsim.geometry.solids import area
 
-TOLD = re.compile(r"\([-−]?\d[^()]*, [-−]?\d[^()]*\)")  # coordinates in a message
+PLACED = re.compile(r"\([-−]?\d[^()]*, [-−]?\d[^()]*\)")  # coordinates in a message
 FEW = 8  # points of a layer written out
 SHOWN = 12  # findings of one code written out in the text
 SAID = {"material": "", "bore": " taken out", "mark": ", no material"}
-LARGEST, SMALL = 10.0, 1e-5  # m: told in millimetres below and from there on
+LARGEST, SMALL = 10.0, 1e-5  # m: shown in millimetres below and from there on
 NOTHING = 1e-12  # m; deviations below are those of floating point
 
 
@@ -191,7 +191,7 @@ def _place(finding: Finding) -> str:
     """Coordinates, where the finding has some and its message does not give them."""
     if finding.x_mm is None or finding.y_mm is None:
         return ""
-    return "" if TOLD.search(finding.message) else f", at {shown((1e-3 * finding.x_mm, 1e-3 * finding.y_mm))} mm"
+    return "" if PLACED.search(finding.message) else f", at {shown((1e-3 * finding.x_mm, 1e-3 * finding.y_mm))} mm"
 
 
 def finding_lines(findings: Iterable[Finding]) -> list[str]:

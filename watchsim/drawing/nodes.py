@@ -1,7 +1,7 @@
-"""Which ends of edges are the same point?
+"""Which ends of edges are the same point, and which edge follows at each?
 
 First ends that agree to a nanometre are one node; then loose ends are joined to what lies within the snap. Tiny real
-edges thus survive: they hang together before the snap is asked. A grid of cells finds neighbours, so the time
+edges thus survive: they hang together before the snap is looked at. A grid of cells finds neighbours, so the time
 grows with the number of ends only.
 """
 
@@ -19,8 +19,6 @@ from watchsim.drawing.findings import Stroke
 from watchsim.geometry.loops import Loop, table_of
 from watchsim.geometry.primitives import TURN, Arc, Edge, Point
 
-# Who drew the edges of this outline?
-
 
 class Outline(NamedTuple):
     """A loop or an open chain, and the name of the entity that drew each of its edges, as CAD shows it."""
@@ -29,11 +27,8 @@ class Outline(NamedTuple):
     sources: tuple[str, ...]
 
 
-# On which side of an outline does one arrive, a way along another one from a point where both meet?
-#
-# Positions on a chain are lengths from its start. Sides are asked near the meeting only, so outlines that come back elsewhere
-# do
-# not matter.
+# On which side of an outline one arrives, a way along another one from a point where both meet, is looked at near the meeting
+# only, so outlines that come back elsewhere do not matter. Positions on a chain are lengths from its start.
 
 STRIDE = 1.3  # growth of the steps away from the meeting
 
@@ -143,8 +138,6 @@ def arrival(a: Track, at_a: float, b: Track, at_b: float, way: float, depth: flo
         step *= STRIDE
     return 0.0
 
-
-# Which ends of edges are the same point?
 
 TIGHT = 1e-9  # metres: the decimals of a drawing
 CROWD = 64  # neighbours looked at per cell: where more ends crowd within a snap, none can be distinguished from another
@@ -265,12 +258,6 @@ class Grid:
         return found
 
 
-# Which edge follows at this end?
-#
-# Where two ends meet the answer is plain. Where more meet, edges that one entity draws in one go (a polyline, a spline)
-# continue each other; if more than two ends are left over then, nobody can know.
-
-
 class Junctions(NamedTuple):
     """`partner` of every end that goes on; ends that are `loose`; ends that meet where the way is unclear, by node."""
 
@@ -280,7 +267,11 @@ class Junctions(NamedTuple):
 
 
 def junctions(nodes: Nodes, strokes: Sequence[Stroke]) -> Junctions:
-    """The continuation at every node; `strokes` are those the nodes were made of."""
+    """The continuation at every node; `strokes` are those the nodes were made of.
+
+    Where more than two ends meet, edges that one entity draws in one go (a polyline, a spline) continue each other; if more
+    than two ends are left over then, nobody can know.
+    """
     partner: dict[int, int] = {}
     loose: list[int] = []
     branches: dict[int, tuple[int, ...]] = {}

@@ -12,20 +12,19 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from watchsim.drawing.findings import Drawn, Finding, Inserted, Stroke
-from watchsim.geometry.primitives import TURN, Arc, Edge, Line
-
-# Where does a block or a tilted entity put its points?
-#
-# Affine maps of space. The drawing's plane is the world's xy plane; entities may be drawn in a plane of their own (object
-# coordinates) and blocks may be turned, mirrored and scaled unequally.
+from watchsim.drawing.findings import Content, Drawn, Finding, Inserted, Stroke, finding_at
+from watchsim.geometry.primitives import TURN, Arc, Edge, Line, Point
 
 Vector = tuple[float, float, float]
 NEARLY_Z = 1.0 / 64.0  # the format's own limit between its two rules for the x axis
 
 
 class Affine(NamedTuple):
-    """Maps (x, y, z) to x·`ax` + y·`ay` + z·`az` + `origin`."""
+    """Maps (x, y, z) to x·`ax` + y·`ay` + z·`az` + `origin`.
+
+    The drawing's plane is the world's xy plane; entities may be drawn in a plane of their own (object coordinates) and blocks
+    may be turned, mirrored and scaled unequally.
+    """
 
     ax: Vector = (1.0, 0.0, 0.0)
     ay: Vector = (0.0, 1.0, 0.0)
@@ -35,11 +34,7 @@ class Affine(NamedTuple):
     def direction(self, v: Vector) -> Vector:
         """The image of a difference of points."""
         (x, y, z), a, b, c = v, self.ax, self.ay, self.az
-        return (
-            x * a[0] + y * b[0] + z * c[0],
-            x * a[1] + y * b[1] + z * c[1],
-            x * a[2] + y * b[2] + z * c[2],
-        )
+        return (x * a[0] + y * b[0] + z * c[0], x * a[1] + y * b[1] + z * c[1], x * a[2] + y * b[2] + z * c[2])
 
     def point(self, p: Vector) -> Vector:
         x, y, z = self.direction(p)
@@ -93,8 +88,6 @@ def unit(v: Vector) -> Vector:
     length = math.hypot(*v)
     return (v[0] / length, v[1] / length, v[2] / length) if length > 0.0 else (0.0, 0.0, 1.0)
 
-
-# Which shapes can a drawing hold, and what becomes of them in the plane?
 
 ROUND = 1e-9  # relative difference of the axes up to which an ellipse is a circle: below any drawing's decimals
 FLAT = 1e-9  # relative width below which an ellipse is seen edge-on
@@ -197,10 +190,8 @@ def edge_on(conic: Conic) -> bool:
     return abs(ux * vy - uy * vx) <= FLAT * max(ux * ux + uy * uy, vx * vx + vy * vy)
 
 
-# What becomes of a shape in the plane?
-#
 # Shapes are projected to the drawing plane. What is a line or an arc becomes one, in metres; other curves wait until all are
-# known, since many are followed much faster together (see follow). Everything found on the way is gathered here.
+# known, since many are followed much faster together. Everything found on the way is gathered here.
 
 MOST_STROKES = 250_000  # more is a fault in the file, not a drawing
 UNFOLDED = 50_000  # pieces that a small file may unfold into; one more for each of its bytes: see `most_strokes`
@@ -244,8 +235,21 @@ class Gathering:
     arcs: int = 0
     deviation: float = 0.0
 
-    def drawn(self) -> Drawn:
-        return Drawn(dict(self.kinds), math.fsum(stroke.edge.length for stroke in self.strokes))
+    def content(self, units: str | None, units_from: str | None, findings: Iterable[Finding]) -> Content:
+        """What a reader hands on once the file is walked through and all curves are followed."""
+        return Content(
+            strokes=tuple(self.strokes),
+            points=tuple(self.points),
+            units=units,
+            units_from=units_from,
+            fitted_curves=self.curves,
+            fitted_arcs=self.arcs,
+            fitted_deviation=self.deviation,
+            ignored=dict(self.ignored),
+            drawn=Drawn(dict(self.kinds), math.fsum(stroke.edge.length for stroke in self.strokes)),
+            inserted=tuple(self.inserted),
+            findings=tuple(findings),
+        )
 
 
 class TooLarge(Exception):
@@ -280,13 +284,13 @@ def emit(found: Gathering, shape: Shape, layer: str, source: str, curves: int = 
             raise TooLarge
     else:
         message = f"{source} is seen edge-on, as a line drawn there and back; it is left out"
-        found.findings.append(_at("edge-on", "warning", message, layer, scale, shape))
+        found.findings.append(finding_at(place_of(shape, scale), "edge-on", "warning", message, layer=layer))
 
 
 def cannot_follow(found: Gathering, curve: Waiting, deviation: float) -> None:
     """Says that a curve could not be followed within its tolerance."""
     message = f"{curve.source} could only be followed within {deviation * 1e6:.3g} µm: it has a cusp or a gap"
-    found.findings.append(_at("fit", "warning", message, curve.layer, found.scale, curve.shape))
+    found.findings.append(finding_at(place_of(curve.shape, found.scale), "fit", "warning", message, layer=curve.layer))
 
 
 def kind_of(shape: Conic | Spline) -> str:
@@ -307,6 +311,11 @@ def corner(shape: Straight | Conic | Spline) -> tuple[float, float, float]:
     return shape.a if isinstance(shape, Straight) else shape.centre if isinstance(shape, Conic) else shape.points[0]
 
 
+def place_of(shape: Straight | Conic | Spline, scale: float) -> Point:
+    """The same in metres."""
+    return (scale * corner(shape)[0], scale * corner(shape)[1])
+
+
 def reach(shape: Straight | Conic | Spline) -> float:
     """The largest coordinate that matters for rounding, drawing units."""
     points = shape.points if isinstance(shape, Spline) else [corner(shape)]
@@ -323,8 +332,3 @@ def tilted(shape: Straight | Conic | Spline) -> bool:
     points = shape.points
     first = points[0]
     return any(abs(p[2] - first[2]) > 1e-6 * math.dist(p, first) for p in points[1:])
-
-
-def _at(code: str, severity: str, message: str, layer: str, scale: float, shape: Straight | Conic | Spline) -> Finding:
-    x, y, _ = corner(shape)
-    return Finding(code, severity, message, "", layer, 1e3 * scale * x, 1e3 * scale * y)

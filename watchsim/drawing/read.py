@@ -8,7 +8,7 @@ from __future__ import annotations
 import gc
 import math
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -17,7 +17,7 @@ from watchsim.drawing.chaining import chain
 from watchsim.drawing.circles import facets
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.dxf import read_dxf
-from watchsim.drawing.findings import Content, Finding
+from watchsim.drawing.findings import Content, Facts, Finding
 from watchsim.geometry.loops import Loop, extents
 from watchsim.units import metric
 
@@ -51,30 +51,17 @@ def assembled(path: Path, ending: str, reader: Callable[[], Content], snap: floa
     with collector_paused():
         content = reader()
         chains = chain(content.strokes, snap, content.fitted_deviation)
-        findings = [*content.findings, *chains.findings, *facets((*chains.loops, *chains.open_chains))]
+        everything = (*chains.loops, *chains.open_chains)
+        findings = [*content.findings, *chains.findings, *facets(everything)]
     if not content.strokes and not any(finding.severity == "error" for finding in findings):
         findings.insert(0, emptiness(content))
     if content.units is None and content.strokes:
-        findings.insert(0, units_missing((*chains.loops, *chains.open_chains)))
-    findings += smallness((*chains.loops, *chains.open_chains), snap)
-    findings += largeness((*chains.loops, *chains.open_chains)) if content.units is not None else ()
-    return Drawing(
-        path=path,
-        format=content.format or ending,
-        units=content.units,
-        units_from=content.units_from,
-        loops=chains.loops,
-        open_chains=chains.open_chains,
-        points=content.points,
-        layers=layer_names(content),
-        fitted_curves=content.fitted_curves,
-        fitted_arcs=content.fitted_arcs,
-        fitted_deviation=content.fitted_deviation,
-        ignored=content.ignored,
-        drawn=content.drawn,
-        findings=tuple(findings),
-        data=content.data,
-    )
+        findings.insert(0, units_missing(everything))
+    findings += odd_size(everything, snap, content.units is not None)
+    layers = dict.fromkeys([stroke.layer for stroke in content.strokes] + [layer for layer, _, _ in content.points])
+    facts = {name: getattr(content, name) for name in Facts.__dataclass_fields__}
+    facts |= {"format": content.format or ending, "findings": tuple(findings)}
+    return Drawing(path=path, loops=chains.loops, open_chains=chains.open_chains, layers=tuple(layers), **facts)
 
 
 @contextmanager
@@ -94,12 +81,14 @@ def read_content(path: Path, ending: str, units: str | None, fit: float) -> Cont
     if path.is_dir():
         return Content(findings=(Finding("unreadable", "error", f"{path} is a folder", "Name one of the drawings in it."),))
     if ending not in ("dxf", "svg", "svgz"):
-        fix = "Save the drawing as DXF or SVG."
-        return refused(f'"{path.name}" ends in neither .dxf nor .svg: this kind of file is not read', fix)
+        message = f'"{path.name}" ends in neither .dxf nor .svg: this kind of file is not read'
+        return Content(findings=(Finding("format", "error", message, "Save the drawing as DXF or SVG."),))
     try:
         size = path.stat().st_size
         if size > LARGEST_FILE:
-            return oversized(size)
+            message = f"the file has {size / 1e6:.0f} MB, more than the {LARGEST_FILE / 1e6:.0f} MB allowed for a drawing"
+            fix = "Save only the part: without pictures, hatches and meshes."
+            return Content(findings=(Finding("too-large", "error", f"{message}; it was not read", fix),))
         data = path.read_bytes()
     except OSError as error:
         reason = "there is no such file" if isinstance(error, FileNotFoundError) else error.strerror or "it cannot be read"
@@ -132,23 +121,6 @@ def format_of(data: bytes, ending: str) -> str:
     return ending
 
 
-def refused(message: str, fix: str) -> Content:
-    return Content(findings=(Finding("format", "error", message, fix),))
-
-
-def oversized(size: int) -> Content:
-    message = (
-        f"the file has {size / 1e6:.0f} MB, more than the {LARGEST_FILE / 1e6:.0f} MB allowed for a drawing; it was not read"
-    )
-    fix = "Save only the part: without pictures, hatches and meshes."
-    return Content(findings=(Finding("too-large", "error", message, fix),))
-
-
-def layer_names(content: Content) -> tuple[str, ...]:
-    """All layers with geometry, in the order of their first appearance."""
-    return tuple(dict.fromkeys([stroke.layer for stroke in content.strokes] + [layer for layer, _, _ in content.points]))
-
-
 def emptiness(content: Content) -> Finding:
     """The error for a file that holds no line and no arc: the reasons stand in its other findings."""
     other = f"; it holds {len(content.points)} points" if content.points else ""
@@ -159,30 +131,24 @@ def emptiness(content: Content) -> Finding:
     return Finding("empty", "error", message, f"Check hidden layers and {place}.")
 
 
-def smallness(loops: tuple[Loop, ...], snap: float) -> list[Finding]:
-    """A warning where the whole drawing is hardly larger than what counts as one point: its units are wrong."""
-    if any(math.dist(edge.start, edge.end) > SMALLEST * snap for loop in loops for edge in loop.edges):
-        return []
+def odd_size(loops: Sequence[Loop], snap: float, known: bool) -> list[Finding]:
+    """A warning where the whole drawing is hardly larger than what counts as one point: its units are wrong.
+
+    Likewise where their unit is known and it is larger than any clock: millimetres in a file that says metres.
+    """
     box = extents(loops)
-    across = max(box[2] - box[0], box[3] - box[1]) if box else math.inf
-    if across > SMALLEST * snap:
+    if box is None:
+        return []
+    across, point, fix = max(box[2] - box[0], box[3] - box[1]), SMALLEST * snap, "Check the units of the drawing."
+    if across > LARGEST and known:
+        return [Finding("huge", "warning", f"the whole drawing is {metric(across, 'm', 4)} across", fix)]
+    if across > point or any(math.dist(edge.start, edge.end) > point for loop in loops for edge in loop.edges):
         return []
     message = f"the whole drawing is {1e6 * across:.3g} µm across, and ends within {1e6 * snap:.3g} µm are taken for one point"
-    return [Finding("tiny", "warning", message, "Check the units of the drawing.")]
+    return [Finding("tiny", "warning", message, fix)]
 
 
-def largeness(loops: tuple[Loop, ...]) -> list[Finding]:
-    """A warning where the drawing is larger than any clock: millimetres in a file that says metres."""
-    box = extents(loops)
-    across = max(box[2] - box[0], box[3] - box[1]) if box else 0.0
-    if across <= LARGEST:
-        return []
-    return [
-        Finding("huge", "warning", f"the whole drawing is {metric(across, 'm', 4)} across", "Check the units of the drawing.")
-    ]
-
-
-def units_missing(loops: tuple[Loop, ...]) -> Finding:
+def units_missing(loops: Sequence[Loop]) -> Finding:
     """The error for a drawing without units, with the sizes it could have."""
     box = extents(loops) or (0.0, 0.0, 0.0, 0.0)
     across = 1e3 * max(box[2] - box[0], box[3] - box[1])

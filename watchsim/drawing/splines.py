@@ -17,13 +17,11 @@ from numpy.typing import NDArray
 
 from watchsim.drawing.dxf_records import DxfError
 from watchsim.drawing.projection import Spline, Vector
-from watchsim.geometry.biarcs import Curve, beziers
+from watchsim.geometry.biarcs import Array, Curve, beziers
 from watchsim.geometry.fitting import Fit, fit_all, fit_arcs
 from watchsim.geometry.primitives import Edge, Line, moved, reflected
-from watchsim.geometry.recognition import Part, joined, parts_of, whole_circle
+from watchsim.geometry.recognition import Part, parts_of, put_together, whole_circle
 
-# Which spline runs through these points?
-#
 # Programs may store a spline by the points it was drawn through alone. Between them it is cubic, with steady curvature.
 
 FEWEST = 3  # points round a closed curve
@@ -80,14 +78,11 @@ def around(fit_points: Sequence[Vector]) -> Cubic:
     return Cubic(3, [breaks[0]] * 2 + [knot for knot in breaks for _ in (0, 1)] + [breaks[-1]] * 2, points)
 
 
-# Which arcs follow a curve that was exported as very many points?
-#
 # Some programs write curves as splines of degree one: polygons with facets far below any tolerance. Where the facets are so
 # fine that a smooth curve through their corners stays within the tolerance of them, the smooth curve is followed instead; real
 # corners and coarse facets stay lines.
 
-Array = NDArray[np.float64]
-FEWEST_DENSE_POLYGON = 8  # facets in a row before they are taken for a curve
+FEWEST_FACETS = 8  # facets in a row before they are taken for a curve
 SHARPEST = math.radians(10.0)  # a corner, however short its sides
 
 
@@ -98,7 +93,7 @@ def polygon_edges(points: Array, tolerance: float) -> tuple[Fit, bool]:
     edges: list[Edge] = []
     worst, fitted = 0.0, False
     for a, b in pairwise(cuts):
-        fit = smooth(points[a : b + 1], tolerance) if b - a >= FEWEST_DENSE_POLYGON else None
+        fit = smooth(points[a : b + 1], tolerance) if b - a >= FEWEST_FACETS else None
         if fit is None:
             edges.extend(Line(*points[k].tolist(), *points[k + 1].tolist()) for k in range(a, b))
         else:
@@ -146,8 +141,6 @@ def _bezier_spans(powers: Array, widths: Array) -> Array:
     control[:, :, :2] = np.stack(points, axis=1)
     return control
 
-
-# Which lines and arcs is a spline made of?
 
 HIGHEST_DEGREE = 24  # CAD programs stop at 11; beyond this the basis functions lose their digits
 SAME_KNOT = 1e-10  # of the knots' range
@@ -232,17 +225,8 @@ def _put_together(parts: Sequence[Part], fits: Iterator[Fit], tolerance: float) 
     """The edges of the parts of one spline: their own, or the next of the fits."""
     if len(parts) == 1 and parts[0].edge is None:
         return next(fits), True
-    edges: list[Edge] = []
-    worst, fitted = 0.0, False
-    for part in parts:
-        if part.edge is not None:
-            edges.append(part.edge)
-            continue
-        fit = next(fits)
-        edges.extend(fit.edges)
-        worst, fitted = max(worst, fit.deviation), True
-    edges, shift = joined(edges, tolerance - worst)
-    return Fit(tuple(edges), worst + shift), fitted
+    own = [next(fits) if part.edge is None else Fit((part.edge,), 0.0) for part in parts]
+    return put_together(own, tolerance), any(part.edge is None for part in parts)
 
 
 def followed(curves: Sequence[Curve], tolerances: Sequence[float]) -> list[Fit]:
@@ -288,11 +272,9 @@ def _first(counts: Sequence[int]) -> NDArray[np.intp]:
     return np.cumsum([0, *counts[:-1]])
 
 
-# Which splines of a drawing are copies of each other?
-#
-# Blocks that are inserted many times, teeth that were drawn once and turned, the two halves of a symmetrical part: what is
-# followed once need only be turned, shifted or mirrored. A copy may differ by rounding, which is measured: a spline leaves
-# another one by no more than their control points do.
+# Splines of a drawing may be copies of each other: blocks that are inserted many times, teeth that were drawn once and turned,
+# the two halves of a symmetrical part. What is followed once need only be turned, shifted or mirrored. A copy may differ by
+# rounding, which is measured: a spline leaves another one by no more than their control points do.
 
 SAME = 1e-3  # of the tolerance: copies may differ by so much
 TRIED = 4  # splines of the same size that are compared

@@ -28,11 +28,9 @@ from watchsim.drawing.svg_elements import (
     read_tree,
     strange_attributes,
 )
-from watchsim.drawing.svg_shapes import METRES, READERS, Box, Measures, PathData, fitted, placed, plane, split_length, view_box
+from watchsim.drawing.svg_shapes import METRES, READERS, Measures, PathData, fitted, placed, plane, split_length, view_box
 from watchsim.drawing.svg_style import Styles, read_styles
 
-# How long is one unit of this SVG drawing, and where does its page put it?
-#
 # Only a size of the page in a unit of length says it: width="4.3mm" viewBox="0 0 4.3 4.3" is a drawing in millimetres. Numbers
 # without a unit are none: they size a picture on a screen.
 
@@ -75,67 +73,51 @@ def page_unit(name: str) -> tuple[str, float]:
 def read_page(values: Mapping[str, str], stated: tuple[str, float] | None) -> Page:
     """The page of a drawing with these attributes of its root; `stated` is what the caller says about the unit."""
     findings: list[Finding] = []
-    box = _asked(lambda: view_box(values.get("viewBox")), findings)
-    width = _asked(lambda: _side(values.get("width")), findings)
-    height = _asked(lambda: _side(values.get("height")), findings)
-    empty = any(side is not None and side.value <= 0.0 for side in (width, height))
-    unit = next((side.unit for side in (width, height) if side is not None and side.unit not in ("", "%")), "")
+
+    def read(reader: Callable[[str | None], Answer], name: str) -> Answer | None:
+        try:
+            return reader(values.get(name))
+        except SvgError as error:
+            findings.append(Finding("damaged", "error", f"the page cannot be read: {error}", "Mend the first <svg> tag."))
+            return None
+
+    box = read(view_box, "viewBox")
+    sides = [read(_side, "width"), read(_side, "height")]
+    empty = any(side is not None and side.value <= 0.0 for side in sides)
+    unit = next((side.unit for side in sides if side is not None and side.unit not in ("", "%")), "")
     if empty:
-        width = height = None
-    w, h = _in_unit(width, unit), _in_unit(height, unit)
-    if width and height and bool(width.unit) != bool(height.unit):
+        sides = [None, None]
+    if None not in sides and len({bool(side.unit) for side in sides if side}) > 1:
         message = "the page gives only one of its sides a unit; the other is taken in pixels"
         findings.append(Finding("page", "warning", message, "Give width and height in the same unit."))
-    return _page(box, (w, h), unit, stated, values.get("preserveAspectRatio"), empty, findings)
-
-
-def _page(
-    box: Box | None,
-    sides: tuple[float | None, float | None],
-    unit: str,
-    stated: tuple[str, float] | None,
-    aspect: str | None,
-    empty: bool,
-    findings: list[Finding],
-) -> Page:
-    pixel = float(METRES["px"] / METRES[unit]) if unit else 1.0  # in page units
-    w, h = sides
+    w, h = (_in_unit(side, unit) for side in sides)
     if box is None:
-        sx, sy, tx, ty = pixel, pixel, 0.0, 0.0
-        width, height = (side / pixel if side is not None else 0.0 for side in sides)
+        sx = sy = float(METRES["px"] / METRES[unit]) if unit else 1.0  # a pixel in page units
+        tx = ty = 0.0
+        width, height = (side / sx if side is not None else 0.0 for side in (w, h))
     else:
+        width, height = box.width, box.height
         if w is None and h is None:
-            w, h = box.width, box.height
-        w = h * box.width / box.height if w is None and h is not None else w
-        h = w * box.height / box.width if h is None and w is not None else h
+            w, h = width, height
+        w = h * width / height if w is None and h is not None else w
+        h = w * height / width if h is None and w is not None else h
         assert w is not None and h is not None
         try:
-            sx, sy, tx, ty = fitted(box, w, h, aspect)
+            sx, sy, tx, ty = fitted(box, w, h, values.get("preserveAspectRatio"))
         except SvgError as error:
             findings.append(Finding("damaged", "error", f"the page cannot be read: {error}"))
             sx, sy, tx, ty = fitted(box, w, h, None)
-        width, height = box.width, box.height
     name, metres = (SPELLED.get(unit, unit), float(METRES[unit])) if unit else (None, 1e-3)
-    if stated is not None and not (name is not None and abs(stated[1] - metres) <= SAME * metres):
+    origin = "page"
+    if stated is not None and (name is None or abs(stated[1] - metres) > SAME * metres):
         if name is not None:
-            factor = stated[1] / (sx * metres)
-            message = f"the page says {name}, you say {stated[0]}: everything is {factor:.6g} times as large"
+            message = f"the page says {name}, you say {stated[0]}: everything is {stated[1] / (sx * metres):.6g} times as large"
             findings.append(Finding("units-overruled", "warning", message))
         name, metres, origin = stated[0], stated[1], "option"
-    else:
-        origin = "page"
     if name is None or origin == "option":  # a unit is then one of the drawing's own numbers
         sy, tx, ty, sx = sy / sx, tx / sx, ty / sx, 1.0
     root = plane(sx, 0.0, 0.0, -sy, tx, -ty)
     return Page(name, origin if name else None, metres, root, width, height, empty, tuple(findings))
-
-
-def _asked(question: Callable[[], Answer], findings: list[Finding]) -> Answer | None:
-    try:
-        return question()
-    except SvgError as error:
-        findings.append(Finding("damaged", "error", f"the page cannot be read: {error}", "Mend the first <svg> tag."))
-        return None
 
 
 def _side(text: str | None) -> _Size | None:
@@ -155,8 +137,6 @@ def _in_unit(side: _Size | None, unit: str) -> float | None:
     return side.value * ratio.numerator / ratio.denominator
 
 
-# Which program wrote this SVG file, and is its pixel that of browsers?
-#
 # A pixel is 1/96 inch since CSS 2.1. Adobe Illustrator writes points (1/72 inch) and calls them pixels; Inkscape counted 1/90
 # inch up to version 0.91 (its release notes of 0.92). Such drawings come out too small without being wrong in any place.
 
@@ -174,16 +154,15 @@ def other_pixels(root: Mapping[str, str], remarks: Sequence[str], page: Page) ->
     if page.units_from == "option" or not (in_pixels or page.units is None):
         return []
     if any("Adobe Illustrator" in remark for remark in remarks):
-        return [_warning("Adobe Illustrator", ILLUSTRATOR, 'Set units = "pt".')]
+        return [_odd_pixels("Adobe Illustrator", ILLUSTRATOR, 'Set units = "pt".')]
     version = _VERSION.match(root.get("inkscape:version", ""))
     if version is not None and (int(version[1]), int(version[2])) < CHANGED:
-        return [
-            _warning(f"Inkscape {version[0].strip()}", OLD_INKSCAPE, "Save it with a newer Inkscape, which asks about this.")
-        ]
+        fix = "Save it with a newer Inkscape, which asks about this."
+        return [_odd_pixels(f"Inkscape {version[0].strip()}", OLD_INKSCAPE, fix)]
     return []
 
 
-def _warning(program: str, pixels: int, fix: str) -> Finding:
+def _odd_pixels(program: str, pixels: int, fix: str) -> Finding:
     message = (
         f"{program} wrote this drawing, which counts {pixels} pixels to the inch instead of {BROWSERS}: it was probably drawn "
         f"{BROWSERS / pixels:.6g} times as large as it is read"
@@ -191,8 +170,6 @@ def _warning(program: str, pixels: int, fix: str) -> Finding:
     return Finding("pixels", "warning", message, fix)
 
 
-# On which layer does an SVG element lie?
-#
 # SVG has no layers. Inkscape marks groups as such; elsewhere groups and closed outlines with a name of their own serve as
 # layers, the innermost first. Names that programs make up (path1234, g10) are none. What has no name lies on layer 0, as in
 # DXF.
@@ -230,8 +207,6 @@ def inside(place: Place, tag: str, attributes: Mapping[str, str], used: bool, cl
         return Place(_ENCODED.sub(lambda match: chr(int(match[1], 16)), identity), True)
     return place
 
-
-# What of an SVG drawing was left out or looks damaged, and does it matter?
 
 FOREIGN = "element of another vocabulary"
 BURIED = "element inside of one that holds none"
@@ -319,8 +294,6 @@ def drawn_within(node: Node) -> int:
     return count
 
 
-# Which lines and arcs does this SVG file hold?
-
 DEEPEST_USE = 32  # <use> within <use>
 MOST_VISITS = 100_000  # to elements that are shown by a <use>
 
@@ -369,18 +342,9 @@ def read_svg(data: bytes, units: str | None, fit: float) -> Content:
             return Content(units=page.units, units_from=page.units_from, findings=findings)
     else:
         found.findings.append(Finding("page", "warning", "the page has no width or no height: nothing of it is shown"))
-    return Content(
-        strokes=tuple(found.strokes),
-        points=tuple(found.points),
-        units=page.units,
-        units_from=page.units_from,
-        fitted_curves=found.curves,
-        fitted_arcs=found.arcs,
-        fitted_deviation=found.deviation,
-        drawn=found.drawn(),
-        ignored=dict(walker.left_out.ignored),
-        findings=(*notes, *styles.findings, *found.findings, *walker.left_out.findings(root)),
-    )
+    found.ignored = walker.left_out.ignored
+    findings = (*notes, *styles.findings, *found.findings, *walker.left_out.findings(root))
+    return found.content(page.units, page.units_from, findings)
 
 
 class Walker:
@@ -504,7 +468,10 @@ class Walker:
             what = f'{node.name} shows "{reference[:60]}", {why}' if reference else f"{node.name} names nothing to show"
             self.report("external" if outside else "use-missing", f"{what}; it is left out", layer)
             return
-        if spot.uses >= DEEPEST_USE or lies_in(spot, target):
+        above: Spot | None = spot
+        while above is not None and above.node is not target:
+            above = above.above
+        if spot.uses >= DEEPEST_USE or above is not None:
             why = "is nested too deeply" if spot.uses >= DEEPEST_USE else f"shows {target.name}, of which it is a part"
             self.report("use-loop", f"{node.name} {why}; it is left out", layer)
             return
@@ -544,16 +511,6 @@ class Walker:
         for row in data.rows:
             self.found.runs += 1
             emit_row(self.found, [shape.mapped(spot.affine) for shape in row.shapes], layer, node.name)
-
-
-def lies_in(spot: Spot, node: Node) -> bool:
-    """Is the spot part of what this element draws?"""
-    at: Spot | None = spot
-    while at is not None:
-        if at.node is node:
-            return True
-        at = at.above
-    return False
 
 
 def conditions_hold(node: Node) -> bool:

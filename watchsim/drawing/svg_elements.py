@@ -1,4 +1,9 @@
-"""Which names of elements and attributes does SVG know, and what becomes of the elements?"""
+"""Which elements does an SVG file hold, and which names of elements and attributes does SVG know?
+
+A tree of elements, read with expat. Nothing outside the file is ever opened. Entities of the document type may stand for
+plain text or elements (drawing programs write their namespaces so); those that name others, that lie outside or that would
+unfold into too much are refused.
+"""
 
 from __future__ import annotations
 
@@ -7,13 +12,7 @@ import zlib
 from dataclasses import dataclass, field
 from xml.parsers import expat
 
-from watchsim.drawing.findings import Finding
-
-# Which elements does this SVG file hold?
-#
-# A tree of elements, read with expat. Nothing outside the file is ever opened. Entities of the document type may stand for
-# plain text or elements (drawing programs write their namespaces so); those that name others, that lie outside or that would
-# unfold into too much are refused.
+from watchsim.drawing.findings import Finding, words
 
 NONE = ""  # no namespace
 SVG = "http://www.w3.org/2000/svg"
@@ -22,17 +21,12 @@ DEEPEST = 256  # elements within elements
 MOST_ELEMENTS = 300_000
 MOST_UNPACKED = 64 * 2**20  # bytes in a .svgz
 MOST_UNFOLDED = 16 * 2**20  # bytes that the entities of a file may become
-WORDLESS = frozenset(  # elements that hold no text
-    ("svg", "g", "defs", "symbol", "switch", "use", "path", "rect", "circle", "ellipse", "line", "polyline", "polygon")
-)
-PREDEFINED = frozenset(("amp", "lt", "gt", "apos", "quot"))
+# Elements that hold no text
+WORDLESS = words("svg g defs symbol switch use path rect circle ellipse line polyline polygon")
+PREDEFINED = words("amp lt gt apos quot")
 CUT_SHORT = frozenset(
-    (
-        expat.errors.codes[expat.errors.XML_ERROR_NO_ELEMENTS],
-        expat.errors.codes[expat.errors.XML_ERROR_UNCLOSED_TOKEN],
-        expat.errors.codes[expat.errors.XML_ERROR_PARTIAL_CHAR],
-        expat.errors.codes[expat.errors.XML_ERROR_UNCLOSED_CDATA_SECTION],
-    )
+    expat.errors.codes[getattr(expat.errors, f"XML_ERROR_{name}")]
+    for name in ("NO_ELEMENTS", "UNCLOSED_TOKEN", "PARTIAL_CHAR", "UNCLOSED_CDATA_SECTION")
 )
 _REFERENCE = re.compile(rb"&([A-Za-z_:][\w.:-]*);")
 _STYLESHEET = re.compile(r"href\s*=\s*[\"']([^\"']*)")
@@ -101,12 +95,9 @@ def read_tree(data: bytes) -> Tree:
 
 def _nameless(builder: _Builder) -> Finding:
     """Browsers and drawing programs draw only what is in the namespace of SVG."""
-    whole = builder.nameless == builder.count
-    what = (
-        "the file names no namespace: browsers draw nothing of it"
-        if whole
-        else (f"{builder.nameless} of {builder.count} elements are in no namespace: browsers do not draw them")
-    )
+    what = f"{builder.nameless} of {builder.count} elements are in no namespace: browsers do not draw them"
+    if builder.nameless == builder.count:
+        what = "the file names no namespace: browsers draw nothing of it"
     return Finding("namespace", "warning", f"{what}; here they are read", f'Write xmlns="{SVG}" in the svg element.')
 
 
@@ -137,9 +128,8 @@ def _fault(error: expat.ExpatError, builder: _Builder, data: bytes) -> Finding:
         return Finding("unreadable", "error", f"this is not an SVG file: {what}")
     last = f"the last whole element is {builder.last.name}" if builder.last else "no element is whole"
     if builder.here is None and b"<" not in data[builder.end :]:
-        return Finding(
-            "trailing", "warning", f"there is something after the end of the drawing, in line {error.lineno}; it was not read"
-        )
+        message = f"there is something after the end of the drawing, in line {error.lineno}; it was not read"
+        return Finding("trailing", "warning", message)
     if error.code in CUT_SHORT:
         message = f"the file ends in line {error.lineno} inside <{builder.inside}>; {last}"
         return Finding("truncated", "error", message, "Save or copy the file again.")
@@ -275,79 +265,45 @@ def _prefixed(attributes: dict[str, str], spaces: dict[str, str]) -> dict[str, s
     return result
 
 
-# Which names of elements and attributes does SVG know, and what becomes of the elements?
-
-CONTAINERS = frozenset(("g", "a", "svg"))
-SILENT = frozenset(  # neither drawn by themselves nor missed
-    (
-        *("defs", "symbol", "clipPath", "mask", "pattern", "marker", "linearGradient", "radialGradient", "meshgradient"),
-        *("filter", "style", "script", "title", "desc", "metadata", "view", "cursor", "font", "font-face", "glyph", "stop"),
-        *(
-            "animate",
-            "animateColor",
-            "animateMotion",
-            "animateTransform",
-            "set",
-            "solidcolor",
-            "hatch",
-            "color-profile",
-            "discard",
-        ),
-    )
+CONTAINERS = words("g a svg")
+SILENT = words(  # neither drawn by themselves nor missed
+    """defs symbol clipPath mask pattern marker linearGradient radialGradient meshgradient filter style script title desc
+    metadata view cursor font font-face glyph stop animate animateColor animateMotion animateTransform set solidcolor hatch
+    color-profile discard"""
 )
-TEXT_LIKE = frozenset(
-    (
-        *("text", "tspan", "textPath", "tref", "image", "foreignObject", "flowRoot", "flowPara", "flowRegion", "altGlyph"),
-        *("video", "audio", "canvas", "iframe", "mesh"),
-    )
+TEXT_LIKE = words(
+    """text tspan textPath tref image foreignObject flowRoot flowPara flowRegion altGlyph video audio canvas iframe mesh"""
 )
-MOVING = frozenset(("animateMotion", "animateTransform"))
-_ANY = frozenset(
-    (
-        *("id", "class", "style", "transform", "lang", "tabindex", "requiredFeatures", "requiredExtensions", "systemLanguage"),
-        *("externalResourcesRequired", "pathLength", "transform-origin", "transform-box", "autofocus", "role", "space", "base"),
-        *("alignment-baseline", "baseline-shift", "clip", "clip-path", "clip-rule", "color", "color-interpolation"),
-        *("color-interpolation-filters", "color-profile", "color-rendering", "cursor", "direction", "display"),
-        *("dominant-baseline", "enable-background", "fill", "fill-opacity", "fill-rule", "filter", "flood-color"),
-        *("flood-opacity", "font", "font-family", "font-size", "font-size-adjust", "font-stretch", "font-style"),
-        *("font-variant", "font-weight", "glyph-orientation-horizontal", "glyph-orientation-vertical", "image-rendering"),
-        *("kerning", "letter-spacing", "lighting-color", "marker", "marker-end", "marker-mid", "marker-start", "mask"),
-        *("opacity", "overflow", "paint-order", "pointer-events", "shape-rendering", "solid-color", "solid-opacity"),
-        *("stop-color", "stop-opacity", "stroke", "stroke-dasharray", "stroke-dashoffset", "stroke-linecap"),
-        *("stroke-linejoin", "stroke-miterlimit", "stroke-opacity", "stroke-width", "text-align", "text-anchor"),
-        *("text-decoration", "text-overflow", "text-rendering", "unicode-bidi", "vector-effect", "visibility", "white-space"),
-        *("word-spacing", "writing-mode", "mix-blend-mode", "isolation", "line-height", "xmlns"),
-    )
+MOVING = words("animateMotion animateTransform")
+_ANY = words(
+    """id class style transform lang tabindex requiredFeatures requiredExtensions systemLanguage externalResourcesRequired
+    pathLength transform-origin transform-box autofocus role space base alignment-baseline baseline-shift clip clip-path
+    clip-rule color color-interpolation color-interpolation-filters color-profile color-rendering cursor direction display
+    dominant-baseline enable-background fill fill-opacity fill-rule filter flood-color flood-opacity font font-family font-size
+    font-size-adjust font-stretch font-style font-variant font-weight glyph-orientation-horizontal glyph-orientation-vertical
+    image-rendering kerning letter-spacing lighting-color marker marker-end marker-mid marker-start mask opacity overflow
+    paint-order pointer-events shape-rendering solid-color solid-opacity stop-color stop-opacity stroke stroke-dasharray
+    stroke-dashoffset stroke-linecap stroke-linejoin stroke-miterlimit stroke-opacity stroke-width text-align text-anchor
+    text-decoration text-overflow text-rendering unicode-bidi vector-effect visibility white-space word-spacing writing-mode
+    mix-blend-mode isolation line-height xmlns"""
 )
+_VIEWPORT = "x y width height viewBox preserveAspectRatio"
 _OWN = {
-    "path": frozenset("d"),
-    "line": frozenset(("x1", "y1", "x2", "y2")),
-    "polyline": frozenset(("points",)),
-    "polygon": frozenset(("points",)),
-    "rect": frozenset(("x", "y", "width", "height", "rx", "ry")),
-    "circle": frozenset(("cx", "cy", "r")),
-    "ellipse": frozenset(("cx", "cy", "rx", "ry")),
-    "use": frozenset(("x", "y", "width", "height", "href")),
-    "g": frozenset(("x", "y", "width", "height")),  # without meaning, and often written
-    "svg": frozenset(
-        (
-            *("x", "y", "width", "height", "viewBox", "preserveAspectRatio", "version", "baseProfile", "zoomAndPan"),
-            *("contentScriptType", "contentStyleType"),
-        )
-    ),
-    "symbol": frozenset(("x", "y", "width", "height", "viewBox", "preserveAspectRatio", "refX", "refY")),
-    "defs": frozenset(),
-    "switch": frozenset(),
+    **{"path": words("d"), "line": words("x1 y1 x2 y2"), "polyline": words("points"), "polygon": words("points")},
+    **{"rect": words("x y width height rx ry"), "circle": words("cx cy r"), "ellipse": words("cx cy rx ry")},
+    **{
+        "use": words("x y width height href"),
+        "symbol": words(f"{_VIEWPORT} refX refY"),
+        "defs": words(""),
+        "switch": words(""),
+    },
+    "svg": words(f"{_VIEWPORT} version baseProfile zoomAndPan contentScriptType contentStyleType"),
+    "g": words("x y width height"),  # without meaning, and often written
 }
 
 
 def strange_attributes(tag: str, attributes: dict[str, str]) -> list[str]:
     """Attributes that this element cannot have: perhaps a damaged name, whose value is then missing."""
-    own = _OWN.get(tag)
-    if own is None:
-        return []
-    return [
-        name
-        for name in attributes
-        if name not in _ANY and name not in own and ":" not in name and not name.startswith(("on", "data-", "aria-"))
-    ]
+    known = _ANY | _OWN[tag] if tag in _OWN else attributes
+    names = (name for name in attributes if name not in known and ":" not in name)
+    return [name for name in names if not name.startswith(("on", "data-", "aria-"))]

@@ -1,15 +1,17 @@
 """What does one SVG element draw?
 
-Each reader takes the attributes of an element and gives rows of shapes in its user units, y downwards as SVG has it. Rules
-for missing and extreme values after SVG 2, chapter 9; what cannot be meant raises SvgError.
+Each reader takes the attributes of an element and gives rows of shapes in its user units, y downwards as SVG has it: pixels of
+1/96 inch before any transformation (CSS Values and Units, absolute lengths). Rules for missing and extreme values after SVG 2,
+chapter 9; what cannot be meant raises SvgError.
 """
 
 from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
+from functools import partial
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -18,20 +20,11 @@ from watchsim.drawing.projection import IDENTITY, Affine, Conic, Dot, Shape, Spl
 from watchsim.drawing.svg_elements import SvgError
 from watchsim.geometry.primitives import TURN
 
-# What do the numbers and lengths in SVG attributes say?
-#
-# Lengths are in user units: pixels of 1/96 inch before any transformation (CSS Values and Units, absolute lengths).
-
 NUMBER = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 INCH = Fraction(254, 10_000)
 METRES = {
-    "px": INCH / 96,
-    "mm": Fraction(1, 1000),
-    "cm": Fraction(1, 100),
-    "in": INCH,
-    "pt": INCH / 72,
-    "pc": INCH / 6,
-    "q": Fraction(1, 4000),
+    **{"px": INCH / 96, "in": INCH, "pt": INCH / 72, "pc": INCH / 6},
+    **{"mm": Fraction(1, 1000), "cm": Fraction(1, 100), "q": Fraction(1, 4000)},
 }
 ITEM = re.compile(rf"\s*(,?)\s*({NUMBER})")
 _LENGTH = re.compile(rf"\s*({NUMBER})\s*([A-Za-z]*|%)\s*")
@@ -87,8 +80,6 @@ def diagonal(width: float, height: float) -> float:
     return math.sqrt(0.5 * (width * width + height * height))
 
 
-# Which pieces does an SVG path draw?
-#
 # The grammar of path data after SVG 1.1 §8.3: commands that repeat, numbers without blanks between them, flags of one digit.
 # As there, a fault ends the path; what stands before it is drawn, and the fault is reported.
 
@@ -272,7 +263,7 @@ def elliptic_arc(p: Point, q: Point, rx: float, ry: float, turn: float, large: b
     return Conic(centre, u, (-v[0], -v[1], 0.0), -start, sweep)
 
 
-# Where do transformations and view boxes put the points of an SVG drawing?
+# Transformations and view boxes
 
 TURNS = {"": 360.0, "deg": 360.0, "grad": 400.0, "rad": 2.0 * math.pi, "turn": 1.0}
 ALIGNED = {"Min": 0.0, "Mid": 0.5, "Max": 1.0}
@@ -319,23 +310,19 @@ def _function(name: str, arguments: str) -> Affine:
         values = numbers(re.sub(r"(?<=[0-9.])px\b", "", arguments))
     except SvgError as error:
         raise SvgError(f"its transform {name}({arguments[:40]}) cannot be read: {error}") from None
-    match name, len(values):
-        case "matrix", 6:
+    match name, values:
+        case "matrix", [_, _, _, _, _, _]:
             return plane(*values)
-        case ("translate", 1) | ("translateX", 1):
-            return shifted((values[0], 0.0, 0.0))
-        case "translateY", 1:
-            return shifted((0.0, values[0], 0.0))
-        case "translate", 2:
-            return shifted((values[0], values[1], 0.0))
-        case "scale", 1:
-            return plane(values[0], 0.0, 0.0, values[0], 0.0, 0.0)
-        case "scale", 2:
-            return plane(values[0], 0.0, 0.0, values[1], 0.0, 0.0)
-        case "scaleX", 1:
-            return plane(values[0], 0.0, 0.0, 1.0, 0.0, 0.0)
-        case "scaleY", 1:
-            return plane(1.0, 0.0, 0.0, values[0], 0.0, 0.0)
+        case ("translate" | "translateX", [x]) | ("translate", [x, _]):
+            return shifted((x, values[1] if len(values) > 1 else 0.0, 0.0))
+        case "translateY", [y]:
+            return shifted((0.0, y, 0.0))
+        case "scale", [x] | [x, _]:
+            return plane(x, 0.0, 0.0, values[-1], 0.0, 0.0)
+        case "scaleX", [x]:
+            return plane(x, 0.0, 0.0, 1.0, 0.0, 0.0)
+        case "scaleY", [y]:
+            return plane(1.0, 0.0, 0.0, y, 0.0, 0.0)
     raise SvgError(f"its transform {name}({arguments[:40]}) is not one of SVG's")
 
 
@@ -399,8 +386,6 @@ def fitted(box: Box, width: float, height: float, aspect: str | None) -> tuple[f
     return sx, sy, tx, ty
 
 
-# What does one SVG element draw?
-
 QUARTER = 0.25 * TURN
 
 
@@ -444,25 +429,16 @@ def line(m: Measures) -> PathData:
     return _single([Straight(a, (m.along("x2"), m.up("y2"), 0.0))], False)
 
 
-def polyline(m: Measures) -> PathData:
-    return _corners(m, closed=False)
-
-
-def polygon(m: Measures) -> PathData:
-    return _corners(m, closed=True)
-
-
-def _corners(m: Measures, closed: bool) -> PathData:
+def corners(m: Measures, closed: bool) -> PathData:
     if "points" not in m.values:
         raise SvgError("it has no points")
     flat = numbers(m.values["points"])
     if len(flat) % 2:
         raise SvgError(f"it has {len(flat)} coordinates, one without its partner")
-    corners = [(x, y, 0.0) for x, y in zip(flat[::2], flat[1::2], strict=True)]
-    if closed and len(corners) > 1 and corners[0] != corners[-1]:
-        corners.append(corners[0])
-    shapes: list[Shape] = [Straight(a, b) for a, b in pairwise(corners)]
-    return _single(shapes, len(corners) > 2 and corners[0] == corners[-1])
+    points = [(x, y, 0.0) for x, y in zip(flat[::2], flat[1::2], strict=True)]
+    if closed and len(points) > 1 and points[0] != points[-1]:
+        points.append(points[0])
+    return _single([Straight(a, b) for a, b in pairwise(points)], len(points) > 2 and points[0] == points[-1])
 
 
 def rect(m: Measures) -> PathData:
@@ -477,16 +453,15 @@ def rect(m: Measures) -> PathData:
     # Around in the sense of growing angles, beginning with the upper side; a side without length is none.
     left, right, top, bottom = x + rx, x + width - rx, y + ry, y + height - ry
     shapes: list[Shape] = []
-    for k, (centre, side) in enumerate(
-        (
-            ((right, top), ((left, y), (right, y))),
-            ((right, bottom), ((x + width, top), (x + width, bottom))),
-            ((left, bottom), ((right, y + height), (left, y + height))),
-            ((left, top), ((x, bottom), (x, top))),
-        )
-    ):
+    sides = (
+        ((right, top), ((left, y), (right, y))),
+        ((right, bottom), ((x + width, top), (x + width, bottom))),
+        ((left, bottom), ((right, y + height), (left, y + height))),
+        ((left, top), ((x, bottom), (x, top))),
+    )
+    for k, (centre, (start, end)) in enumerate(sides):
         if (2.0 * rx < width) if k % 2 == 0 else (2.0 * ry < height):
-            shapes.append(Straight((*side[0], 0.0), (*side[1], 0.0)))
+            shapes.append(Straight((*start, 0.0), (*end, 0.0)))
         shapes.append(Conic((*centre, 0.0), (rx, 0.0, 0.0), (0.0, ry, 0.0), (k - 1) * QUARTER, QUARTER))
     return _single(shapes, True)
 
@@ -518,15 +493,15 @@ def ellipse(m: Measures) -> PathData:
     return _single([Conic((m.along("cx"), m.up("cy"), 0.0), (rx, 0.0, 0.0), (0.0, ry, 0.0), 0.0, TURN)], True)
 
 
-def _single(shapes: list[Shape], closed: bool) -> PathData:
-    return PathData([Row(shapes, closed)] if shapes else [], "")
+def _single(shapes: Sequence[Shape], closed: bool) -> PathData:
+    return PathData([Row(list(shapes), closed)] if shapes else [], "")
 
 
 READERS: dict[str, Callable[[Measures], PathData]] = {
     "path": path,
     "line": line,
-    "polyline": polyline,
-    "polygon": polygon,
+    "polyline": partial(corners, closed=False),
+    "polygon": partial(corners, closed=True),
     "rect": rect,
     "circle": full_circle,
     "ellipse": ellipse,

@@ -1,7 +1,12 @@
-"""What does the sheet of a part look like as a DXF file?
+"""How are outlines written as DXF and SVG files?
 
-Millimetres as its draughtsman has them (write_dxf writes outlines in metres), named layers, one point on the layer PIVOT, and
-nothing that changes from one writing to the next: the same sheet gives the same file.
+Outlines in metres become DXF of release 2010 (UTF-8, true colours) in millimetres: circles as CIRCLE, arcs as ARC, outlines of
+straight lines only as one closed LWPOLYLINE, all else as LINE. An arc stays an arc about its own centre; as the bulge of a
+polyline a flat one would lose digits. Only loops that touch another one are polylines with bulges all the same: as single lines
+nobody could tell which way they go on. Numbers are written so that they read back to the last bit.
+
+The sheet of a part has millimetres as its draughtsman has them, and one point on the layer PIVOT. Nothing changes from one
+writing to the next: the same outlines give the same file.
 """
 
 from __future__ import annotations
@@ -14,7 +19,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
-from xml.sax.saxutils import quoteattr
+from xml.sax.saxutils import escape, quoteattr
 
 import ezdxf
 from ezdxf.layouts import Modelspace
@@ -25,15 +30,6 @@ from watchsim.geometry.primitives import Arc, Edge, Line, Point
 if TYPE_CHECKING:
     from ezdxf.document import Drawing
 
-
-# How are outlines written as a DXF file?
-#
-# Release 2010 (UTF-8, true colours) in millimetres: circles as CIRCLE, arcs as ARC, outlines of straight lines only as one
-# closed
-# LWPOLYLINE, all else as LINE. An arc stays an arc about its own centre; as the bulge of a polyline a flat one would lose
-# digits.
-# Only loops that touch another one are polylines with bulges all the same: as single lines nobody could tell which way they go
-# on. Numbers are written so that they read back to the last bit, and the same outlines give the same bytes.
 
 MM = 1e3
 TIGHT = 1e-13  # m
@@ -58,6 +54,8 @@ def dxf_text(loops: Iterable[Loop], points: Iterable[tuple[str, Point]] = (), co
             _add_loop(space, loop, touching)
         for layer, (x, y) in points:
             space.add_point((MM * x, MM * y), dxfattribs={"layer": _name(layer)})
+        document.classes.add_required_classes(document.dxfversion)
+        document.classes.classes = dict(sorted(document.classes.classes.items()))  # some come from a set, in any order
         document.write(stream)
     return stream.getvalue()
 
@@ -88,15 +86,12 @@ def _add_loop(space: Modelspace, loop: Loop, touching: bool) -> None:
     attributes = {"layer": _name(loop.layer)}
     straight = all(isinstance(edge, Line) for edge in loop.edges)
     if loop.closed and len(loop.edges) > 1 and (touching or straight) and _joined(loop):
-        corners = [(MM * edge.start[0], MM * edge.start[1], _bulge(edge)) for edge in loop.edges]
+        bulges = (math.tan(0.25 * edge.sweep) if isinstance(edge, Arc) else 0.0 for edge in loop.edges)
+        corners = [(MM * edge.start[0], MM * edge.start[1], bulge) for edge, bulge in zip(loop.edges, bulges, strict=True)]
         space.add_lwpolyline(corners, format="xyb", close=True, dxfattribs=attributes)
         return
     for edge in loop.edges:
-        _add_edge(space, edge, attributes)
-
-
-def _bulge(edge: Edge) -> float:
-    return math.tan(0.25 * edge.sweep) if isinstance(edge, Arc) else 0.0
+        _add_edge(space, edge, attributes, MM)
 
 
 def _joined(loop: Loop) -> bool:
@@ -104,24 +99,22 @@ def _joined(loop: Loop) -> bool:
     return all(math.dist(a.end, b.start) <= TIGHT for a, b in zip(loop.edges, (*loop.edges[1:], loop.edges[0]), strict=True))
 
 
-def _add_edge(space: Modelspace, edge: Edge, attributes: dict[str, str]) -> None:
+def _add_edge(space: Modelspace, edge: Edge, attributes: dict[str, str], scale: float) -> None:
     if isinstance(edge, Line):
-        space.add_line((MM * edge.x0, MM * edge.y0), (MM * edge.x1, MM * edge.y1), dxfattribs=attributes)
+        space.add_line((scale * edge.x0, scale * edge.y0), (scale * edge.x1, scale * edge.y1), dxfattribs=attributes)
         return
-    centre = (MM * edge.x, MM * edge.y)
+    centre = (scale * edge.x, scale * edge.y)
     if edge.is_circle:
-        space.add_circle(centre, MM * edge.radius, dxfattribs=attributes)
+        space.add_circle(centre, scale * edge.radius, dxfattribs=attributes)
         return
     arc = edge if edge.sweep > 0.0 else edge.reversed()  # a DXF arc runs counter-clockwise
     start = math.degrees(arc.start_angle) % 360.0
-    space.add_arc(centre, MM * arc.radius, start, start + math.degrees(arc.sweep), dxfattribs=attributes)
+    space.add_arc(centre, scale * arc.radius, start, start + math.degrees(arc.sweep), dxfattribs=attributes)
 
 
-# How are outlines written as an SVG file?
-#
-# A page in real millimetres whose user unit is the millimetre, y turned down as SVG has it; one Inkscape layer per layer, in it
-# one path with straight lines and circular A commands. Arcs are divided into parts of at most a quarter turn: A gives ends and
-# radius only, and the centre of a half turn would be lost in their rounding.
+# SVG: a page in real millimetres whose user unit is the millimetre, y turned down as SVG has it; one Inkscape layer per layer,
+# in it one path with straight lines and circular A commands. Arcs are divided into parts of at most a quarter turn: A gives
+# ends and radius only, and the centre of a half turn would be lost in their rounding.
 
 MARGIN = 0.05  # of the larger side, around the outlines
 STROKE = 0.002  # of the larger side
@@ -147,7 +140,7 @@ def svg_text(
         '<svg xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"',
         f'  width="{width!r}mm" height="{height!r}mm" viewBox="{left!r} {top!r} {width!r} {height!r}">',
     ]
-    lines += [f"  <title>{_escaped(title)}</title>"] if title else []
+    lines += [f"  <title>{escape(title)}</title>"] if title else []
     for layer, members in layers.items():
         fill = (colours or {}).get(layer, "#d0d4d8")
         lines += _group(layer, f'fill="{fill}" stroke="#23272c" stroke-width="{STROKE * size:.4g}"', _path(members))
@@ -164,29 +157,21 @@ def _group(layer: str, look: str, content: Iterable[str]) -> list[str]:
     return [head, *(f"    {line}" for line in content), "  </g>"]
 
 
-def _escaped(text: str) -> str:
-    return text.replace("&", "&amp;").replace("<", "&lt;")
-
-
 def _path(loops: list[Loop]) -> Iterator[str]:
     """One path with all closed loops of a layer, so that holes stay empty; one for each open chain."""
-    circles = [loop for loop in loops if loop.closed and not loop.hole and _is_disc(loop, loops)]
-    for loop in circles:
+    pierced = any(loop.hole for loop in loops)  # then a circle must share the path of its holes
+    closed = []
+    for loop in loops:
         arc = loop.edges[0]
-        assert isinstance(arc, Arc)
-        yield f'<circle cx="{MM * arc.x!r}" cy="{-MM * arc.y + 0.0!r}" r="{MM * arc.radius!r}"/>'
-    closed = [loop for loop in loops if loop.closed and loop not in circles]
+        if loop.closed and not pierced and len(loop.edges) == 1 and isinstance(arc, Arc) and arc.is_circle:
+            yield f'<circle cx="{MM * arc.x!r}" cy="{-MM * arc.y + 0.0!r}" r="{MM * arc.radius!r}"/>'
+        elif loop.closed:
+            closed.append(loop)
     if closed:
         yield f'<path d="{" ".join(_commands(loop) for loop in closed)}"/>'
     for chain in loops:
         if not chain.closed:
             yield f'<path fill="none" d="{_commands(chain)}"/>'
-
-
-def _is_disc(loop: Loop, loops: list[Loop]) -> bool:
-    """A full circle on a layer without holes may be a circle element; with holes it must share their path."""
-    edge = loop.edges[0]
-    return len(loop.edges) == 1 and isinstance(edge, Arc) and edge.is_circle and not any(other.hole for other in loops)
 
 
 def _commands(loop: Loop) -> str:
@@ -209,8 +194,6 @@ def _commands(loop: Loop) -> str:
 def _xy(p: Point) -> str:
     return f"{MM * p[0]!r} {-MM * p[1] + 0.0!r}"
 
-
-# What does the sheet of a part look like as a DXF file?
 
 COLOURS = {"PIVOT": 1, "TEETH": 2, "STONES": 6, "PALLETS": 6, "PIN": 6, "FORK": 4, "DART": 3, "SAFETY": 3, "PINS": 5}
 PLAIN = 7
@@ -239,8 +222,6 @@ class Sheet:
 
 def new_sheet(layers: tuple[str, ...], pivot: Point | None = (0.0, 0.0)) -> Drawing:
     """An empty drawing in millimetres with these layers and, unless None, the pivot point (mm)."""
-    import ezdxf  # a fifth of the start of a run that draws nothing
-
     ezdxf.options.write_fixed_meta_data_for_testing = True
     sheet = ezdxf.new("R2000", units=ezdxf.units.MM)
     for layer in layers:
@@ -268,17 +249,8 @@ def add_loop(sheet: Drawing, loop: Loop) -> None:
 
 
 def add_edge(sheet: Drawing, layer: str, edge: Edge) -> None:
-    """One LINE, ARC or CIRCLE; a DXF arc always runs counter-clockwise."""
-    space = sheet.modelspace()
-    attributes = {"layer": layer}
-    if isinstance(edge, Line):
-        space.add_line((*edge.start, 0.0), (*edge.end, 0.0), dxfattribs=attributes)
-    elif edge.is_circle:
-        space.add_circle((edge.x, edge.y, 0.0), edge.radius, dxfattribs=attributes)
-    else:
-        arc = edge if edge.sweep > 0.0 else edge.reversed()
-        start = math.degrees(arc.start_angle) % 360.0
-        space.add_arc((arc.x, arc.y, 0.0), arc.radius, start, start + math.degrees(arc.sweep), dxfattribs=attributes)
+    """One LINE, ARC or CIRCLE (mm)."""
+    _add_edge(sheet.modelspace(), edge, {"layer": layer}, 1.0)
 
 
 def write(sheet: Drawing, path: Path) -> None:

@@ -17,18 +17,17 @@ from numpy.typing import NDArray
 
 from watchsim.geometry.primitives import Arc, Edge, Line, Point
 
-# What is a curve that arcs are to follow?
-#
-# A plane curve, rational between its breaks: splines and ellipses are of this kind exactly. Its spans are rational Béziers
-# (G. Farin, Curves and Surfaces for CAGD, ch. 5 and 13), whose homogeneous coordinates are polynomials: their range can be
-# bounded without doubt.
-
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class Curve:
-    """Control points (spans, degree + 1, 3), homogeneous: x·w, y·w, w in metres; and the ascending breaks (spans + 1,)."""
+    """Control points (spans, degree + 1, 3), homogeneous: x·w, y·w, w in metres; and the ascending breaks (spans + 1,).
+
+    A plane curve that arcs are to follow, rational between its breaks: splines and ellipses are of this kind exactly. Its spans
+    are rational Béziers (G. Farin, Curves and Surfaces for CAGD, ch. 5 and 13), whose homogeneous coordinates are polynomials:
+    their range can be bounded without doubt.
+    """
 
     control: Array
     breaks: Array
@@ -94,8 +93,6 @@ def bernstein_sum(scaled: Array, u: Array) -> Array:
     return np.broadcast_to(total, np.broadcast_shapes(total.shape, u.shape))
 
 
-# How are many curves looked at in one go?
-#
 # Curves of one degree side by side, so that each step is made for all of them at once. A place is one number: spans are
 # numbered through, one number is left out behind each curve, and the share of the span stands after the point. So the start of
 # a span is a whole number, and places ascend along a curve and from curve to curve.
@@ -200,15 +197,11 @@ class Bundle:
         return np.maximum(low[source], k), np.minimum(high[source], k + 1.0), source
 
 
-# Which Béziers is a B-spline made of?
-#
-# Control point m of degree n between the knots a < b is the blossom at n - m times a and m times b, by de Boor's scheme
-# (L. Ramshaw, Blossoms are polar forms, Computer Aided Geometric Design 6, 1989). All spans at once.
-
-
 def beziers(degree: int, knots: Array, points: Array, knot: Numbers, point: Numbers) -> Array:
-    """Control points (spans, degree + 1, columns) of the spans that start at the knots numbered `knot` (spans,).
+    """Control points (spans, degree + 1, columns) of the spans of a B-spline that start at the knots numbered `knot` (spans,).
 
+    Control point m of degree n between the knots a < b is the blossom at n - m times a and m times b, by de Boor's scheme
+    (L. Ramshaw, Blossoms are polar forms, Computer Aided Geometric Design 6, 1989). All spans at once.
     `point` are the numbers of the last control points (rows of `points`) that act on these spans. No span may have no length.
     """
     near = knots[knot[:, None] + np.arange(1 - degree, degree + 1)]  # (spans, 2 degree)
@@ -226,8 +219,6 @@ def beziers(degree: int, knots: Array, points: Array, knot: Numbers, point: Numb
     return result
 
 
-# How do the pieces of chains share the work?
-#
 # A chain begins and ends with single arcs; all others come in pairs, as biarcs. What a piece can do is measured in arcs of the
 # best chain there could be (see fit).
 
@@ -288,8 +279,6 @@ def shares(demand: Demand, begin: Array, end: Array, layout: Layout) -> tuple[Ar
     nodes[start[layout.first]], nodes[start[layout.last] + 1] = begin, end
     return nodes, load
 
-
-# Which two arcs join two points with given tangents?
 
 STRAIGHT = 1e6  # an arc of a radius above this many chords is a line: its rise is below 1.3e-7 of the chord
 
@@ -370,16 +359,14 @@ def crosses(a: Array, b: Array) -> Array:
     return a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
 
 
-# How far can a curve be from the arcs that follow it, between any samples?
-#
-# Let an arc start at p with unit tangent τ, left normal ν and signed curvature k, and let q = c - p for a point c of the curve.
-# Then g = q·ν - k q²/2 vanishes on the arc's circle, and the distance from that circle is |d| = 2|g| / (1 + √(1 - 2kg)).
-# Along a part of the curve that is rational of degree n, g times the squared weight is a polynomial of degree 2n: 2n + 1
-# samples
-# give its Chebyshev coefficients, and |T_j| ≤ 1. The first four terms are a cubic whose extremes are found in closed form;
-# the others add the sum of their magnitudes. So the bound holds for every parameter (up to rounding), and it is sharp,
-# because the deviation of an arc from a smooth curve is nearly a cubic. That the curve passes beside the arc itself, not the
-# rest of its circle, is bounded in the same way: what it overshoots the normals at both ends is added.
+# How far a curve can be from the arcs that follow it, between any samples: let an arc start at p with unit tangent τ, left
+# normal ν and signed curvature k, and let q = c - p for a point c of the curve. Then g = q·ν - k q²/2 vanishes on the arc's
+# circle, and the distance from that circle is |d| = 2|g| / (1 + √(1 - 2kg)). Along a part of the curve that is rational of
+# degree n, g times the squared weight is a polynomial of degree 2n: 2n + 1 samples give its Chebyshev coefficients, and |T_j| ≤
+# 1. The first four terms are a cubic whose extremes are found in closed form; the others add the sum of their magnitudes. So
+# the bound holds for every parameter (up to rounding), and it is sharp, because the deviation of an arc from a smooth curve is
+# nearly a cubic. That the curve passes beside the arc itself, not the rest of its circle, is bounded in the same way: what it
+# overshoots the normals at both ends is added.
 
 SLACK = 0.01  # of the bound: where the higher terms or unequal weights may add more, the interval is halved
 HALVINGS = 6
@@ -494,9 +481,7 @@ def _range(a: Array) -> tuple[Array, Array, Array]:
     return np.min(values, axis=0), np.max(values, axis=0), tail
 
 
-# How many arcs does each part of a curve need?
-#
-# From the rate of its curvature first; then from what a trial has shown.
+# How many arcs each part of a curve needs, from the rate of its curvature first; then from what a trial has shown.
 
 BEST = math.sqrt(3.0) / 216.0  # largest deviation of the best chain over |κ′| h³
 STEPS = 48  # in which the change of curvature is measured, along each curve at least

@@ -43,9 +43,7 @@ from watchsim.geometry.biarcs import (
 )
 from watchsim.geometry.primitives import Edge, Line
 
-# Where does a curve pause, turn back or change its curvature at once?
-#
-# Arcs that follow a curve take its own tangent at such places, on either side.
+# Where a curve pauses, turns back or changes its curvature at once the arcs take its own tangent, on either side.
 
 LOOKS = 32  # places in each span where the speed is looked at
 SLOW = 0.2  # of the usual speed: a minimum below that is looked at more closely
@@ -141,10 +139,9 @@ def slowest(bundle: Bundle, low: Array, high: Array) -> Array:
     return 0.5 * (low + high)
 
 
-# How is a given number of arcs laid along each curve?
-#
-# Single arcs at the ends and biarcs in between. The tangents at the ends of the biarcs are the curve's, turned a little so that
-# the deviation swings evenly (see fit). One chain for each of many curves, laid at once.
+# A given number of arcs is laid along each curve: single arcs at the ends and biarcs in between. The tangents at the ends of
+# the biarcs are the curve's, turned a little so that the deviation swings evenly (see fit). One chain for each of many curves,
+# laid at once.
 
 MOST_TILT = 0.1  # radians, of the tangent at a joint
 HARDEST = 64.0  # tolerances: what a larger deviation counts
@@ -288,11 +285,10 @@ def _abreast(bundle: Bundle, joints: Array, along: Array, low: Array, guess: Arr
     return t
 
 
-# Which chain of arcs within the tolerance has the fewest?
-#
-# Chains are laid, their lengths corrected until all deviations are alike, and the number of arcs lowered as long as that
-# succeeds. All curves of a bundle are searched side by side, each as long as it needs. How hard to try is a choice: where
-# thousands of curves wait, a search that stops a little sooner takes half the time and leaves some four per cent more arcs.
+# The chain with the fewest arcs within the tolerance: chains are laid, their lengths corrected until all deviations are alike,
+# and the number of arcs lowered as long as that succeeds. All curves of a bundle are searched side by side, each as long as it
+# needs. How hard to try is a choice: where thousands of curves wait, a search that stops a little sooner takes half the time
+# and leaves some four per cent more arcs.
 
 MOST = 5  # attempts with one number of arcs: more where one arc counts for more
 WEIGHTY = 48  # arcs over attempts
@@ -397,16 +393,14 @@ def bounds(bundle: Bundle, trial: Trial, chosen: NDArray[np.bool_]) -> Array:
     return worst
 
 
-# Which few arcs follow this curve?
-
 KINK = 1e-6  # radians between a single arc's and the curve's tangent at its end
 ROUNDS = 20  # of distributing the arcs anew
 ROUNDS_OF_HALVES = 6  # where the whole did not succeed
 AT_ONCE = 1024  # curves: so many that single steps cost little, so few that the numbers stay near the processor
-MANY_FIT = 4000  # spans: where more wait, the search for the fewest arcs stops a little sooner
+MANY_SPANS = 4000  # spans: where more wait, the search for the fewest arcs stops a little sooner
 DEEPEST = 40  # halvings where nothing helps: at a cusp
 NOTHING = 1e-5  # of the tolerance: edges shorter than that are left out
-LOOKS_FIT = 33  # places in each span that show its extent
+EXTENT_LOOKS = 33  # places in each span that show its extent
 
 
 class Fit(NamedTuple):
@@ -427,7 +421,7 @@ def fit_arcs(curve: Curve, tolerance: float) -> Fit:
 
 def fit_all(curves: Sequence[Curve], tolerances: Sequence[float]) -> list[Fit]:
     """The same for many curves, much faster than one by one; where there are very many, with some more arcs."""
-    effort = THOROUGH if sum(len(curve.control) for curve in curves) <= MANY_FIT else BRISK
+    effort = THOROUGH if sum(len(curve.control) for curve in curves) <= MANY_SPANS else BRISK
     parts: list[list[Curve]] = [[] for _ in curves]
     for chosen in batches(curves):
         smooth = smooth_parts([curves[k] for k in chosen], np.array([tolerances[k] for k in chosen]))
@@ -508,7 +502,7 @@ def _fits(found: Sequence[Found | None], tolerance: Array) -> list[Fit]:
 def _extent(curve: Curve) -> float:
     """A bound of the distance between a short curve and its chord, wherever it turns: its extent, sampled."""
     number = np.arange(len(curve.control))
-    points = Bundle([curve]).at(number, np.broadcast_to(np.linspace(0.0, 1.0, LOOKS_FIT), (len(number), LOOKS_FIT)))
+    points = Bundle([curve]).at(number, np.broadcast_to(np.linspace(0.0, 1.0, EXTENT_LOOKS), (len(number), EXTENT_LOOKS)))
     return float(np.hypot(np.ptp(points[0]), np.ptp(points[1])))
 
 

@@ -18,11 +18,10 @@ from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Edge, Line, Point
 from watchsim.geometry.solids import Section, section
 
-# What shape has a hairspring whose inner end has been turned?
-#
-# For pictures. At rest it is an Archimedean spiral from collet to stud. Turned, it keeps both ends and its length to first
-# order: the radius stays linear in the share of the way but for a bulge k x (1 - x), so that its mean grows as the spring
-# unwinds and shrinks as it is wound up: it breathes. A real one bends off its centre a little, too, which is left out.
+# The shape of a hairspring whose inner end has been turned, for pictures. At rest it is an Archimedean spiral from collet to
+# stud. Turned, it keeps both ends and its length to first order: the radius stays linear in the share of the way but for a
+# bulge k x (1 - x), so that its mean grows as the spring unwinds and shrinks as it is wound up: it breathes. A real one bends
+# off its centre a little, too, which is left out.
 
 Array = NDArray[np.float64]
 
@@ -62,8 +61,6 @@ class Coil:
         swept = max(rest - turned, math.tau * LEAST)
         return min(max(3.0 * (self.inner + self.outer) * (rest / swept - 1.0), -STEEPEST * way), STEEPEST * way)
 
-
-# How heavy is a hairspring, and how is its mass spread about the balance's axis?
 
 SHARE = 1.0 / 3.0  # of its inertia, and of its mass, that a spring held at one end adds to what it drives (Rayleigh)
 CHORDS = 48  # per turn, where the spiral is drawn

@@ -1,7 +1,8 @@
-"""Which points draw an outline?
+"""What is a sound outline, how large is it, which points draw it, which lie inside, and where do its edges meet?
 
-Pictures, movies and overlap checks need plain vertices; lines give their ends, arcs are sampled so finely that no
-chord strays further from its arc than requested.
+An outline is a chain of edges, each starting where the one before ends; closed, it bounds material on its left: an outer
+outline runs counter-clockwise, a hole clockwise. Pictures, movies and overlap checks need plain vertices; lines give their
+ends, arcs are sampled so finely that no chord strays further from its arc than requested.
 """
 
 from __future__ import annotations
@@ -14,12 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.geometry.primitives import Arc, Edge, Point, moved, reflected
-
-# What is a sound outline?
-#
-# A chain of edges, each starting where the one before ends; closed, it bounds material on its left: an outer outline
-# runs counter-clockwise, a hole clockwise.
+from watchsim.geometry.primitives import TURN, Arc, Edge, Point, moved, reflected
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,11 +48,10 @@ class Loop:
         return Loop(edges, self.layer, self.closed, self.hole)
 
 
-# What are the numbers of many edges, column by column?
-
 Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
 
-QUARTER = 0.5 * np.pi
+QUARTER = 0.5 * math.pi
 
 
 class Table(NamedTuple):
@@ -65,7 +60,7 @@ class Table(NamedTuple):
     start: Floats
     end: Floats
     box: Floats
-    arc: NDArray[np.bool_]
+    arc: Flags
     centre: Floats
     radius: Floats
     start_angle: Floats
@@ -94,10 +89,7 @@ def table_of(edges: Sequence[Edge]) -> Table:
     return Table(start, end, box, arc, centre, radius, angle, sweep)
 
 
-# How large is an outline?
-
 Box = tuple[float, float, float, float]
-QUARTER_EXTENT = 0.5 * math.pi
 FEW = 32  # edges: from columns it takes longer
 
 
@@ -107,7 +99,7 @@ def edge_extents(edge: Edge) -> Box:
     xs, ys = [x0, x1], [y0, y1]
     if isinstance(edge, Arc):
         low, high = sorted((edge.start_angle, edge.start_angle + edge.sweep))
-        for k in range(math.ceil(low / QUARTER_EXTENT), math.floor(high / QUARTER_EXTENT) + 1):
+        for k in range(math.ceil(low / QUARTER), math.floor(high / QUARTER) + 1):
             ex, ey = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))[k % 4]
             xs.append(edge.x + edge.radius * ex)
             ys.append(edge.y + edge.radius * ey)
@@ -131,15 +123,13 @@ def total_length(loops: Iterable[Loop]) -> float:
     return math.fsum(edge.length for loop in loops for edge in loop.edges)
 
 
-# Which edges come near each other?
-#
-# A tree of square cells is refined, all cells of one level at once, until few edges pass through each cell; only edges that
-# share a cell can meet. The work grows with the number of edges, however they are arranged: where very many run together, not
-# every pair is given, and it is said where.
+# Edges that come near each other: a tree of square cells is refined, all cells of one level at once, until few edges pass
+# through each cell; only edges that share a cell can meet. The work grows with the number of edges, however they are arranged:
+# where very many run together, not every pair is given, and it is said where.
 
 Ints = NDArray[np.int64]
 
-FEW_NEAR_EDGES = 24  # edges in a cell that is refined no further
+IN_CELL = 24  # edges in a cell that is refined no further
 DEEPEST = 30  # levels: cells of a billionth of the drawing
 GROWTH = 64  # entries per edge; edges that run along each other could be cut into cells for ever
 MOST_ENTRIES = 3_000_000  # of edges in cells, and
@@ -175,7 +165,7 @@ def near_pairs(table: Table, reach: float) -> Pairs:
         starts = np.flatnonzero(np.append(True, np.any(cell[1:] != cell[:-1], axis=1)))
         counts = np.diff(np.append(starts, len(edge)))
         last = level == DEEPEST or len(edge) > min(GROWTH * count, MOST_ENTRIES) or size < 4.0 * reach
-        done = np.ones(len(counts), bool) if last else counts <= FEW_NEAR_EDGES
+        done = np.ones(len(counts), bool) if last else counts <= IN_CELL
         found, complete = _paired(table, edge, starts[done], counts[done], reach, room)
         keys += found
         room -= sum(map(len, found))
@@ -234,13 +224,13 @@ def _quartered(table: Table, edge: Ints, cell: Ints, low: Floats, size: float, r
     return edge[passes], cell[passes]
 
 
-def _line_passes(table: Table, edge: Ints, middle: Floats, half: float) -> NDArray[np.bool_]:
+def _line_passes(table: Table, edge: Ints, middle: Floats, half: float) -> Flags:
     """Does the straight line through the ends cut the square round `middle`?"""
     along, to = table.end[edge] - table.start[edge], middle - table.start[edge]
     return np.abs(along[:, 0] * to[:, 1] - along[:, 1] * to[:, 0]) <= half * np.abs(along).sum(axis=1)
 
 
-def _arc_passes(table: Table, edge: Ints, middle: Floats, half: float) -> NDArray[np.bool_]:
+def _arc_passes(table: Table, edge: Ints, middle: Floats, half: float) -> Flags:
     """Does the whole circle cut the square round `middle`?"""
     off = np.abs(middle - table.centre[edge])
     nearest, farthest = np.maximum(off - half, 0.0), off + half
@@ -248,14 +238,98 @@ def _arc_passes(table: Table, edge: Ints, middle: Floats, half: float) -> NDArra
     return (np.hypot(*nearest.T) <= radius) & (np.hypot(*farthest.T) >= radius)
 
 
-# Does this point lie inside the outline?
-#
-# Exact for arcs: the winding number of the polygon of chords, and one turn more for each arc between which and its chord the
-# point lies.
+# Where two edges meet: closed forms for lines and arcs, for many pairs at once: the roots of line and line, line and circle,
+# circle and circle, and ends of one edge that lie on the other (which edges along each other have instead of roots).
+
+PARALLEL = 1e-12  # sine of the angle between lines below which their root is rounding
+
+
+class Meetings(NamedTuple):
+    """Points (m, 2) in metres at which pair `pair` meets; the same point may come several times."""
+
+    pair: Ints
+    point: Floats
+
+
+def meetings(table: Table, first: Ints, second: Ints, reach: float) -> Meetings:
+    """All points where edges first[k] and second[k] come together within `reach` metres."""
+    numbers = np.arange(len(first))
+    pairs: list[Ints] = []
+    points: list[Floats] = []
+    for a, b in ((first, second), (second, first)):
+        for end in (table.start, table.end):
+            keep = within(table, b, end[a], reach)
+            pairs.append(numbers[keep])
+            points.append(end[a][keep])
+    for a_arc, b_arc, roots in ((False, False, _lines), (False, True, _line_circle), (True, True, _circles)):
+        for a, b in ((first, second), (second, first))[: 1 if a_arc == b_arc else 2]:
+            chosen = numbers[(table.arc[a] == a_arc) & (table.arc[b] == b_arc)]
+            for found, root in roots(table, a[chosen], b[chosen], reach):
+                some, p = chosen[found], root[found]
+                keep = within(table, a[some], p, reach) & within(table, b[some], p, reach)
+                pairs.append(some[keep])
+                points.append(p[keep])
+    return Meetings(np.concatenate(pairs), np.concatenate(points))
+
+
+def within(table: Table, edge: Ints, point: Floats, reach: float) -> Flags:
+    """Does point[k] lie within `reach` metres of edge[k]?"""
+    start, end = table.start[edge], table.end[edge]
+    near_end = np.minimum(np.hypot(*(point - start).T), np.hypot(*(point - end).T)) <= reach
+    along, to = end - start, point - start
+    length = np.hypot(*along.T)
+    s = np.sum(along * to, axis=1)
+    beside = np.abs(along[:, 0] * to[:, 1] - along[:, 1] * to[:, 0]) <= reach * length
+    on_line = (s >= 0.0) & (s <= length * length) & beside
+    off = point - table.centre[edge]
+    on_arc = (np.abs(np.hypot(*off.T) - table.radius[edge]) <= reach) & _in_sweep(table, edge, off)
+    return near_end | np.where(table.arc[edge], on_arc, on_line)
+
+
+def _in_sweep(table: Table, edge: Ints, off: Floats) -> Flags:
+    """Does the direction `off` from the centre lie in the arc's sector?"""
+    sweep = table.sweep[edge]
+    turn = np.where(sweep < 0.0, -1.0, 1.0) * (np.arctan2(off[:, 1], off[:, 0]) - table.start_angle[edge])
+    return np.mod(turn, TURN) <= np.abs(sweep)
+
+
+def _lines(table: Table, a: Ints, b: Ints, reach: float) -> list[tuple[Flags, Floats]]:
+    u, v = table.end[a] - table.start[a], table.end[b] - table.start[b]
+    cross = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
+    found = np.abs(cross) > PARALLEL * np.hypot(*u.T) * np.hypot(*v.T)
+    to = table.start[b] - table.start[a]
+    s = (to[:, 0] * v[:, 1] - to[:, 1] * v[:, 0]) / np.where(found, cross, 1.0)
+    return [(found, table.start[a] + s[:, None] * u)]
+
+
+def _line_circle(table: Table, a: Ints, b: Ints, reach: float) -> list[tuple[Flags, Floats]]:
+    start, u = table.start[a], table.end[a] - table.start[a]
+    u = u / np.hypot(*u.T)[:, None]
+    to, radius = table.centre[b] - start, table.radius[b]
+    foot, beside = np.sum(u * to, axis=1), u[:, 0] * to[:, 1] - u[:, 1] * to[:, 0]
+    found = np.abs(beside) <= radius + reach
+    half = np.sqrt(np.maximum((radius - beside) * (radius + beside), 0.0))
+    return [(found, start + (foot + side * half)[:, None] * u) for side in (-1.0, 1.0)]
+
+
+def _circles(table: Table, a: Ints, b: Ints, reach: float) -> list[tuple[Flags, Floats]]:
+    to, r, q = table.centre[b] - table.centre[a], table.radius[a], table.radius[b]
+    apart = np.hypot(*to.T)
+    found = (apart > reach) & (apart <= r + q + reach) & (apart >= np.abs(r - q) - reach)
+    apart = np.where(found, apart, 1.0)
+    u = to / apart[:, None]
+    foot = 0.5 * (apart + (r - q) * (r + q) / apart)
+    half = np.sqrt(np.maximum((r - foot) * (r + foot), 0.0))
+    across = np.column_stack((-u[:, 1], u[:, 0]))
+    return [(found, table.centre[a] + foot[:, None] * u + (side * half)[:, None] * across) for side in (-1.0, 1.0)]
 
 
 class Inside:
-    """Answers for many points of one closed loop: its edges are sorted into strips of height, and one strip is looked at."""
+    """Answers for many points of one closed loop: its edges are sorted into strips of height, and one strip is looked at.
+
+    Exact for arcs: the winding number of the polygon of chords, and one turn more for each arc between which and its chord the
+    point lies.
+    """
 
     def __init__(self, loop: Loop) -> None:
         self.edges = loop.edges
@@ -315,8 +389,6 @@ def _under(arc: Arc, start: Point, end: Point, p: Point) -> bool:
     side = (end[0] - start[0]) * (p[1] - start[1]) - (end[1] - start[1]) * (p[0] - start[0])
     return (side < 0.0) == (arc.sweep > 0.0)
 
-
-# Which points draw an outline?
 
 SMALLEST_STEP = 1e-4  # radians; a finer chord differs from its arc by rounding only
 

@@ -1,7 +1,9 @@
-"""How is motion added to a glTF scene?
+"""How do outlines and solids become trimesh's paths and meshes, and the other way round?
 
-Each moving body has a node; an animation gives that node places and turns at key times, straight lines and shortest turns
-between them (Khronos, glTF 2.0 specification, 3.11 and appendix C).
+Everything here is in millimetres: trimesh's own tolerances are absolute and made for numbers of that size. GLB files, which are
+in metres by their standard, are scaled as they are written. There each moving body has a node; an animation gives that node
+places and turns at key times, straight lines and shortest turns between them (Khronos, glTF 2.0 specification, 3.11 and
+appendix C).
 """
 
 from __future__ import annotations
@@ -25,8 +27,6 @@ from trimesh.visual.material import PBRMaterial
 from watchsim.geometry.loops import Loop, chords, polyline
 from watchsim.geometry.primitives import TURN, Arc, Edge, Line, Point
 from watchsim.geometry.solids import pieces, region
-
-# How is motion added to a glTF scene?
 
 Array = NDArray[np.float64]
 FLOAT = 5126  # the code of 32-bit floating point
@@ -57,7 +57,10 @@ def add_motion(tracks: Sequence[Track], buffers: MutableMapping[str, bytes], tre
         number = nodes[track.name]
         node = tree["nodes"][number]
         node.pop("matrix", None)  # what is animated must not have one
-        values = {"translation": _translations(track), "rotation": _rotations(track)}
+        zero = np.zeros(len(track.t))
+        # Quaternions x, y, z, w of turns about z; halves of steady angles do not jump, so that neighbours lie close together.
+        turns = np.column_stack((zero, zero, np.sin(0.5 * track.angles), np.cos(0.5 * track.angles)))
+        values = {"translation": np.column_stack((track.places, zero)), "rotation": turns}
         times = _accessor(f"{track.name}.t", track.t, "SCALAR", buffers, tree)
         for path, rows in values.items():
             node[path] = rows[0].astype(np.float32).tolist()
@@ -67,16 +70,6 @@ def add_motion(tracks: Sequence[Track], buffers: MutableMapping[str, bytes], tre
             samplers.append({"input": times, "output": output, "interpolation": "LINEAR"})
     if channels:
         tree["animations"] = [{"name": "motion", "samplers": samplers, "channels": channels}]
-
-
-def _translations(track: Track) -> Array:
-    return np.column_stack((track.places, np.zeros(len(track.t))))
-
-
-def _rotations(track: Track) -> Array:
-    """Quaternions x, y, z, w of turns about z; halves of steady angles do not jump, so that neighbours lie close together."""
-    zero = np.zeros(len(track.t))
-    return np.column_stack((zero, zero, np.sin(0.5 * track.angles), np.cos(0.5 * track.angles)))
 
 
 def _accessor(name: str, values: Array, kind: str, buffers: MutableMapping[str, bytes], tree: Mapping[str, Any]) -> int:
@@ -95,11 +88,6 @@ def _accessor(name: str, values: Array, kind: str, buffers: MutableMapping[str, 
     }
     return len(tree["accessors"]) - 1
 
-
-# How do outlines and solids become trimesh's paths and meshes, and the other way round?
-#
-# Everything here is in millimetres: trimesh's own tolerances are absolute and made for numbers of that size. GLB files, which
-# are in metres by their standard, are scaled as they are written.
 
 MM = 1e3
 SAME_VERTEX = 1e-12  # m: two edges this close share a vertex, so that trimesh sees the outline closed

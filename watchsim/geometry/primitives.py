@@ -1,4 +1,8 @@
-"""Which boxes hold these points?"""
+"""What is a line, what is an arc, and which boxes hold these points?
+
+Edges are frozen records in metres and radians with a direction of travel. An outline is a sequence of them with the material on
+the left.
+"""
 
 from __future__ import annotations
 
@@ -8,11 +12,6 @@ from decimal import Decimal, localcontext
 
 import numpy as np
 from numpy.typing import NDArray
-
-# What is a line, what is an arc?
-#
-# Both are frozen records in metres and radians with a direction of travel. An outline is a sequence of them
-# with the material on the left.
 
 Point = tuple[float, float]
 TURN = 2.0 * math.pi
@@ -103,20 +102,11 @@ def moved(edge: Edge, angle: float, shift: Point) -> Edge:
     """The edge turned by `angle` (radians) about the origin, then shifted (metres)."""
     c, s = math.cos(angle), math.sin(angle)
     dx, dy = shift
-    if isinstance(edge, Line):
-        return Line(
-            c * edge.x0 - s * edge.y0 + dx,
-            s * edge.x0 + c * edge.y0 + dy,
-            c * edge.x1 - s * edge.y1 + dx,
-            s * edge.x1 + c * edge.y1 + dy,
-        )
-    return Arc(
-        c * edge.x - s * edge.y + dx,
-        s * edge.x + c * edge.y + dy,
-        edge.radius,
-        edge.start_angle + angle,
-        edge.sweep,
-    )
+    if isinstance(edge, Arc):
+        x, y = c * edge.x - s * edge.y + dx, s * edge.x + c * edge.y + dy
+        return Arc(x, y, edge.radius, edge.start_angle + angle, edge.sweep)
+    (x0, y0), (x1, y1) = edge.start, edge.end
+    return Line(c * x0 - s * y0 + dx, s * x0 + c * y0 + dy, c * x1 - s * y1 + dx, s * x1 + c * y1 + dy)
 
 
 def reflected(edge: Edge, foot: Point, direction: Point) -> Edge:
@@ -132,16 +122,15 @@ def reflected(edge: Edge, foot: Point, direction: Point) -> Edge:
     return Arc(*image(edge.x, edge.y), edge.radius, 2.0 * math.atan2(uy, ux) - edge.start_angle, -edge.sweep)
 
 
-# What are the cosine and sine of an angle, to more digits than a float holds?
-#
-# A point on an arc whose radius is a million times its length keeps all its digits only so.
-
 DIGITS = 40
 QUARTER = Decimal("1.5707963267948966192313216916397514420985846996875529")
 
 
 def cos_sin(angle: Decimal) -> tuple[Decimal, Decimal]:
-    """Cosine and sine of `angle` (radians, up to some turns) to about 38 digits."""
+    """Cosine and sine of `angle` (radians, up to some turns) to about 38 digits.
+
+    A point on an arc whose radius is a million times its length keeps all its digits only so.
+    """
     with localcontext() as context:
         context.prec = DIGITS
         quarters = int((angle / QUARTER).to_integral_value())
@@ -166,8 +155,6 @@ def middle(edge: Arc, exact: bool) -> tuple[float, float, float, float]:
     x, y, radius = Decimal(edge.x), Decimal(edge.y), Decimal(edge.radius)
     return float(x + radius * cosine), float(y + radius * sine), float(cosine), float(sine)
 
-
-# Which boxes hold these points?
 
 FEW = 300  # up to that many, all pairs are compared; the library takes longer to load
 

@@ -191,6 +191,13 @@ def joined(edges: Sequence[Edge], spare: float) -> tuple[list[Edge], float]:
     return result, moved
 
 
+def put_together(fits: Sequence[Fit], tolerance: float) -> Fit:
+    """What follows the parts of a curve, end to end, with neighbouring arcs of one circle made one."""
+    worst = max((fit.deviation for fit in fits), default=0.0)
+    edges, shift = joined([edge for fit in fits for edge in fit.edges], tolerance - worst)
+    return Fit(tuple(edges), worst + shift)
+
+
 def _apart(one: Edge, other: Edge) -> float:
     """How far two arcs' circles are from each other; infinite unless both turn one way, in all one turn at most."""
     if not (isinstance(one, Arc) and isinstance(other, Arc)) or one.sweep * other.sweep < 0.0:

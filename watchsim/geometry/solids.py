@@ -1,16 +1,24 @@
-"""What are mass and moments of inertia of a turned part?
+"""What are area, mass and moments of inertia of flat and of turned parts?
 
-A half profile of lines and arcs is turned about an axis. With s along the axis and r across it, Pappus's rule gives every
-volume integral as one over the profile: ∫ f dV = 2π ∫ f r dA; the moment of inertia about the axis is 2π ∫ r³ dA. These are
-moments up to the third order of a polygon and of circular segments, as in `mass`: of a triangle by products of its corners,
-of a segment by Gauss's rule over its opening angle. The integrands there are positive trigonometric polynomials of low degree,
-so that the rule is exact to rounding and, unlike their closed forms, loses no digits for flat segments.
+Exact for outlines of lines and arcs. An outline is the polygon of its chords plus one circular segment per arc; for both
+there are closed forms (polygon: Gauss's area formula and its moments; segment: below). Loops that run clockwise count negative,
+so holes subtract by themselves.
+
+Segment of half angle h on radius r, about the middle of its chord (integrals over sector minus triangle, moved there):
+area r² (h - sin h cos h), first moment along its axis r³ (sin h - sin³h/3 - h cos h), polar moment
+r⁴ (h/2 + h cos²h - 3/2 sin h cos h). All three cancel for small h; there their power series are summed.
+
+A half profile is turned about an axis. With s along the axis and r across it, Pappus's rule gives every volume integral as one
+over the profile: ∫ f dV = 2π ∫ f r dA; the moment of inertia about the axis is 2π ∫ r³ dA. These are moments up to the third
+order: of a triangle by products of its corners, of a segment by Gauss's rule over its opening angle. The integrands there are
+positive trigonometric polynomials of low degree, so that the rule is exact to rounding and, unlike their closed forms, loses no
+digits for flat segments.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -20,18 +28,9 @@ import shapely
 from watchsim.geometry.loops import Loop, extents, polyline
 from watchsim.geometry.primitives import Arc, Point
 
-# What are area, centroid and moment of inertia of a flat part?
-#
-# Exact for outlines of lines and arcs. An outline is the polygon of its chords plus one circular segment per arc; for both
-# there are closed forms (polygon: Gauss's area formula and its moments; segment: below). Loops that run
-# clockwise count negative, so holes subtract by themselves.
-#
-# Segment of half angle h on radius r, about the middle of its chord (integrals over sector minus triangle, moved there):
-# area r² (h - sin h cos h), first moment along its axis r³ (sin h - sin³h/3 - h cos h), polar moment
-# r⁴ (h/2 + h cos²h - 3/2 sin h cos h). All three cancel for small h; there their power series are summed.
-
 SERIES_BELOW = 0.7  # radians of half angle: above it the closed forms lose fewer than three digits
 TERMS = 12
+Moments = tuple[float, float, float, float]  # four integrals over an area
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,13 +57,8 @@ class Section:
     def plus(self, other: Section) -> Section:
         """Both areas together, about this one's origin."""
         there = other.about(self.origin)
-        return Section(
-            self.origin,
-            self.area + there.area,
-            self.first_x + there.first_x,
-            self.first_y + there.first_y,
-            self.polar + there.polar,
-        )
+        first = self.first_x + there.first_x, self.first_y + there.first_y
+        return Section(self.origin, self.area + there.area, *first, self.polar + there.polar)
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,31 +104,42 @@ def section(loops: Iterable[Loop]) -> Section:
 
 def section_of_loop(loop: Loop) -> Section:
     """The moments of one closed loop, about the mean of its corners (so that far-away drawings lose no digits)."""
-    edges = loop.edges
-    starts = [edge.start for edge in edges]
+    starts = [edge.start for edge in loop.edges]
     x0 = math.fsum(p[0] for p in starts) / len(starts)
     y0 = math.fsum(p[1] for p in starts) / len(starts)
+    return Section((x0, y0), *_summed(loop, x0, y0, _triangle, _segment))
+
+
+def _summed(
+    loop: Loop,
+    x0: float,
+    y0: float,
+    triangle: Callable[[float, float, float, float], Moments],
+    segment: Callable[[Arc, float, float], Moments],
+) -> Moments:
+    """Moments of one closed loop, about (x0, y0): of the triangles to its chords and of the segments beside them."""
     parts = []
-    previous = edges[-1].end
-    for edge, start in zip(edges, starts, strict=True):
-        end = edge.end
+    previous = loop.edges[-1].end
+    for edge in loop.edges:
+        (ax, ay), (bx, by) = start, end = edge.start, edge.end
         if previous != start:  # within the snap: bridged by a straight bit
-            parts.append(_triangle(previous[0] - x0, previous[1] - y0, start[0] - x0, start[1] - y0))
-        parts.append(_triangle(start[0] - x0, start[1] - y0, end[0] - x0, end[1] - y0))
+            parts.append(triangle(previous[0] - x0, previous[1] - y0, ax - x0, ay - y0))
+        parts.append(triangle(ax - x0, ay - y0, bx - x0, by - y0))
         if isinstance(edge, Arc):
-            parts.append(_segment(edge, 0.5 * (start[0] + end[0]) - x0, 0.5 * (start[1] + end[1]) - y0))
+            parts.append(segment(edge, 0.5 * (ax + bx) - x0, 0.5 * (ay + by) - y0))
         previous = end
-    return Section((x0, y0), *(math.fsum(column) for column in zip(*parts, strict=True)))
+    first, second, third, fourth = (math.fsum(column) for column in zip(*parts, strict=True))
+    return first, second, third, fourth
 
 
-def _triangle(ax: float, ay: float, bx: float, by: float) -> tuple[float, float, float, float]:
+def _triangle(ax: float, ay: float, bx: float, by: float) -> Moments:
     """Area and moments of the triangle origin, a, b."""
     doubled = ax * by - bx * ay
     square = ax * ax + ay * ay + ax * bx + ay * by + bx * bx + by * by
     return 0.5 * doubled, doubled * (ax + bx) / 6.0, doubled * (ay + by) / 6.0, doubled * square / 12.0
 
 
-def _segment(arc: Arc, mx: float, my: float) -> tuple[float, float, float, float]:
+def _segment(arc: Arc, mx: float, my: float) -> Moments:
     """Area and moments of the circular segment between an arc and its chord, whose middle is (mx, my)."""
     h = 0.5 * abs(arc.sweep)
     sign = math.copysign(1.0, arc.sweep)
@@ -165,10 +170,7 @@ def _unit_segment(h: float) -> tuple[float, float, float]:
     return size, first, polar
 
 
-# Which area do outlines enclose, as polygons?
-#
-# Solids for other programs and overlaps of layers seen from above need plane regions; arcs become chords here. Nothing that
-# is computed exactly passes through this file.
+# Solids for other programs and overlaps of layers seen from above need plane regions; arcs become chords here.
 
 Region = Any  # a shapely geometry of polygons
 
@@ -190,8 +192,6 @@ def pieces(found: Region) -> Iterator[Region]:
     parts = getattr(found, "geoms", [found])
     yield from (part for part in parts if part.geom_type == "Polygon" and part.area > 0.0)
 
-
-# What are mass and moments of inertia of a turned part?
 
 NODES, WEIGHTS = (tuple(map(float, column)) for column in np.polynomial.legendre.leggauss(24))
 ON_AXIS = 1e-6  # of the profile's largest radius: a profile drawn with few decimals may cross its axis by that
@@ -220,7 +220,7 @@ def turned(loops: Iterable[Loop], foot: Point, direction: Point) -> Turned:
     profile = upright(loops, foot, direction)
     box = extents(profile)
     middle = 0.5 * (box[0] + box[2]) if box else 0.0
-    moments = [_loop_moments(loop, middle) for loop in profile]
+    moments = [_summed(loop, middle, 0.0, _triangle_revolution, _segment_revolution) for loop in profile]
     first, along, along_square, cubed = (math.tau * math.fsum(column) for column in zip(*moments, strict=True))
     if not first > 0.0:
         raise ValueError("this half profile encloses no area: nothing can be turned from it")
@@ -248,26 +248,8 @@ def reach(loops: Iterable[Loop], foot: Point, direction: Point) -> float:
     return box[3] if box else 0.0
 
 
-Moments = tuple[float, float, float, float]  # ∫ y, ∫ x y, ∫ x² y, ∫ y³ over an area
-
-
-def _loop_moments(loop: Loop, middle: float) -> Moments:
-    """Of one loop, x counted from `middle`."""
-    parts = []
-    x, y = loop.edges[-1].end
-    for edge in loop.edges:
-        (ax, ay), (bx, by) = edge.start, edge.end
-        parts.append(_triangle_revolution(x - middle, y, ax - middle, ay))  # nothing, or a bridge across a gap within the snap
-        parts.append(_triangle_revolution(ax - middle, ay, bx - middle, by))
-        if isinstance(edge, Arc):
-            parts.append(_segment_revolution(edge, 0.5 * (ax + bx) - middle, 0.5 * (ay + by)))
-        x, y = bx, by
-    first, along, along_square, cubed = (math.fsum(column) for column in zip(*parts, strict=True))
-    return first, along, along_square, cubed
-
-
 def _triangle_revolution(ax: float, ay: float, bx: float, by: float) -> Moments:
-    """Of the triangle origin, a, b: ∫ λ₁ⁱ λ₂ʲ dA = D i! j! / (i + j + 2)! with D twice its area."""
+    """∫ y, ∫ x y, ∫ x² y, ∫ y³ over the triangle origin, a, b: ∫ λ₁ⁱ λ₂ʲ dA = D i! j! / (i + j + 2)! with D twice its area."""
     doubled = ax * by - bx * ay
     return (
         doubled * (ay + by) / 6.0,
@@ -278,7 +260,7 @@ def _triangle_revolution(ax: float, ay: float, bx: float, by: float) -> Moments:
 
 
 def _segment_revolution(arc: Arc, mx: float, my: float) -> Moments:
-    """Of the circular segment between an arc and its chord, whose middle is (mx, my)."""
+    """The same of the circular segment between an arc and its chord, whose middle is (mx, my)."""
     middle = arc.start_angle + 0.5 * arc.sweep
     ex, ey = math.cos(middle), math.sin(middle)  # from the chord to the arc; across it (-ey, ex)
     r = arc.radius

@@ -21,8 +21,8 @@ from watchsim.geometry.primitives import TURN, Arc, Edge, Line, Point
 from watchsim.scene.errors import Fault
 from watchsim.scene.forces import Side
 from watchsim.scene.scene import Scene
+from watchsim.scene.toml import key_lines
 from watchsim.scene.trains import start_poses
-from watchsim.scene.values import key_lines
 from watchsim.tolerances import DRAWING_ROUNDING
 
 # Which polygons stand for the material that some outlines bound?

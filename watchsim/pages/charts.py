@@ -1,4 +1,4 @@
-"""The still picture of a page: for paper, and for readers that run no scripts."""
+"""Charts of the timing sheet, and the still picture of a page: SVG in the page, for paper and for readers without scripts."""
 
 from __future__ import annotations
 
@@ -13,10 +13,9 @@ from watchsim.pages.player import path_data
 from watchsim.render.marks import decimals_for, signed
 from watchsim.render.palette import BLUED, LIGHT, PALE_PICTURE_STYLE, mixed
 from watchsim.render.parts import Part
-from watchsim.render.view import Frame, View, Window, hairsprings, poses, room_of, view, zigzags
+from watchsim.render.rows import reduced
+from watchsim.render.view import Frame, View, Window, bounds, hairsprings, poses, room_of, view, zigzags
 from watchsim.simulation.trajectory import Array, Trajectory
-
-# How are the charts of the sheet drawn? As SVG in the page itself, in the colours of its style sheet.
 
 WIDTH, HEIGHT = 560.0, 230.0
 LEFT, RIGHT, TOP, BOTTOM = 88.0, 12.0, 12.0, 44.0  # of the large letters on a telephone five fit between label and axis
@@ -34,9 +33,9 @@ class Dots:
     look: str
 
 
-def scatter(series: Sequence[Dots], x_label: str, y_label: str, description: str) -> Markup:
-    """Dots over labelled axes; `description` is what the chart says to those who cannot see it."""
-    clean = [_thinned(one) for one in series]
+def scatter(series: Sequence[Dots], x_label: str, y_label: str, description: str, most: int = MOST) -> Markup:
+    """Dots over labelled axes, at most so many of a series; `description` is what the chart says to those who cannot see it."""
+    clean = [_thinned(one, most) for one in series]
     xs, ys = (np.concatenate([getattr(one, axis) for one in clean]) for axis in "xy")
     x_axis, y_axis = _Axis(xs, LEFT, WIDTH - RIGHT, 7), _Axis(ys, HEIGHT - BOTTOM, TOP, 5)
     marks = [
@@ -55,11 +54,9 @@ def _key(one: Dots) -> Markup:
     return element("span", dot, one.name)
 
 
-def _thinned(one: Dots) -> Dots:
+def _thinned(one: Dots, most: int) -> Dots:
     known = np.isfinite(one.x) & np.isfinite(one.y)
-    x, y = one.x[known], one.y[known]
-    step = max(1, math.ceil(len(x) / MOST))
-    return Dots(one.name, x[::step], y[::step], one.look)
+    return Dots(one.name, *reduced(one.x[known], one.y[known], most // 4), one.look)
 
 
 class _Axis:
@@ -153,8 +150,6 @@ def strip(entries: Sequence[tuple[str, float, int]], unit: str, description: str
     return element("figure", picture, class_="chart")
 
 
-# The still picture of a page: for paper, and for readers that run no scripts.
-
 MARGIN = 0.04
 MOST_POSTER = 150_000  # characters of path data; more than that is left to the player
 MM = 1e3
@@ -215,11 +210,10 @@ def poster(run: Trajectory, window: Window, parts: tuple[Part, ...], t: float) -
 
 def _box(run: Trajectory, window: Window, seen: View, frames: dict[str, Array]) -> tuple[float, float, float, float]:
     """Least and largest x and y (m) in the turned picture."""
-    c, s = math.cos(seen.turn), math.sin(seen.turn)
     if seen.follow is None:
-        points = room_of(run, window, None)[0] @ np.array([[c, s], [-s, c]])
-        (left, bottom), (right, top) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
+        (left, bottom), (right, top) = (end.tolist() for end in bounds(room_of(run, window, None)[0], seen.turn))
         return left, bottom, right, top
+    c, s = math.cos(seen.turn), math.sin(seen.turn)
     x, y = seen.centre_at(frames)
     across, along = c * x - s * y, s * x + c * y
     half_width, half_height = 0.5 * FRAME.width / seen.scale, 0.5 * FRAME.height / seen.scale

@@ -23,9 +23,7 @@ from watchsim.results.folder import LOCK, travelling
 from watchsim.results.tables import json_text
 from watchsim.simulation.trajectory import Trajectory
 
-# How does text become HTML, so that no title and no file name can become anything else?
-#
-# Whatever is no `Markup` is escaped on its way into an element.
+# Whatever is no `Markup` is escaped on its way into an element: no title and no file name can become anything else.
 
 VOID = frozenset(("img", "input", "meta", "path", "rect", "line", "circle", "polyline"))
 
@@ -86,8 +84,6 @@ def section(name: str, title: str, *content: Content) -> Markup:
     return element("section", element("h2", title, id=f"h-{name}"), *content, aria_labelledby=f"h-{name}", class_=name)
 
 
-# What does a value look like in a notebook: a title, a few lines, and a picture beside them?
-
 STYLE = Markup(
     "<style>.watchsim{display:flex;gap:18px;align-items:flex-start;flex-wrap:wrap}"
     ".watchsim>div{max-width:420px}.watchsim>.scroll{max-width:100%;overflow-x:auto}.watchsim p{margin:0 0 4px}"
@@ -111,7 +107,7 @@ def image(png: bytes, words: str, width: int) -> Markup:
     return joined(element("img", src=f"data:image/png;base64,{data}", alt=words, width=width))
 
 
-# Which files can be saved from a page? The scene with its drawings, and the numbers: one zip archive, and each by itself.
+# Files to be saved from a page: the scene with its drawings, and the numbers, one zip archive, and each by itself.
 
 MOST = 300_000  # bytes of packed files; a page must fit into a mail
 LONGEST = 20_000_000  # bytes of a table that is worth trying: packed it is a tenth
@@ -164,8 +160,6 @@ def _entry(archive: bytes, info: zipfile.ZipInfo) -> dict[str, Any]:
     kind = TYPES.get(info.filename.rsplit(".", 1)[-1].lower(), "application/octet-stream")
     return {"name": info.filename, "type": kind, "size": info.file_size, "from": start, "to": start + info.compress_size}
 
-
-# How do template, style, scripts and data become one file that asks nothing of any network?
 
 ASSETS = "watchsim.pages.assets"
 PLOTTING = ("uplot/LICENSE", "uplot/uPlot.iife.min.js", "uplot/uPlot.min.css")

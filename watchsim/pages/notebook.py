@@ -1,4 +1,4 @@
-"""How is a run played inside a notebook?
+"""What do runs, scenes, beats and studies show of themselves in a notebook, and how is a run played there?
 
 The page of `report` without its sheet and its files, in a frame of its own that may run its scripts and nothing else.
 """
@@ -8,31 +8,27 @@ from __future__ import annotations
 import io
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
-from watchsim.analysis.timing import Beats, averages, beats, last_window
+from watchsim.analysis.timing import Averages, Beats, averages, beats, last_window
 from watchsim.mechanism.compile import compile_scene
 from watchsim.pages.charts import scatter
 from watchsim.pages.html import Markup, card, element, image, table
 from watchsim.pages.player import shown
 from watchsim.pages.report_page import player_text
-from watchsim.pages.timing_sheet import both_ways, with_error
+from watchsim.pages.timing_sheet import AVERAGED, both_ways, with_error
 from watchsim.render.stage import Stage
 from watchsim.render.still import at_rest
+from watchsim.render.study_plot import axis_label, output_label, plot_sensitivity, plot_sweep, usual_value
+from watchsim.render.style import minus, small_png
 from watchsim.render.view import Window, poses
 from watchsim.scene.roles import frequency, swings
 from watchsim.scene.scene import Scene
 from watchsim.simulation.trajectory import Trajectory
-from watchsim.studies.axes import Axis
 from watchsim.studies.cycle import Cycle
-from watchsim.studies.point import Output
 from watchsim.studies.sensitivity import Sensitivity
 from watchsim.studies.sweep import Sweep
-from watchsim.units import to
-
-# What do limit cycles, sweeps and sensitivities show of themselves in a notebook?
 
 ROWS = 12  # of a table; the rest is counted
 DOTS_STUDY_CARDS, SHOWN = 560, 420  # of a picture, and how wide it is shown
@@ -41,13 +37,7 @@ PRINTED = 85.0  # mm, for which the letters are large enough
 
 def cycle_html(cycle: Cycle) -> str:
     """Verdict, amplitude, rate, beat error and stability."""
-    values = (
-        ("amplitude", cycle.amplitude_deg, cycle.amplitude_deg_error, "°"),
-        ("rate", cycle.rate_s_per_d, cycle.rate_s_per_d_error, " s/d"),
-        ("beat error", cycle.beat_error_ms, cycle.beat_error_ms_error, " ms"),
-    )
-    told = [(name, *with_error(value, error, unit)) for name, value, error, unit in values if value is not None]
-    lines = [" ".join(filter(None, parts)) for parts in told]
+    lines = _means(cycle)
     if cycle.multipliers:
         lines.append(f"multiplier {', '.join(f'{value:.4g}' for value in cycle.multipliers)}")
     return card("Limit cycle" if cycle.found else f"No limit cycle: {cycle.verdict}", [*lines, cycle.message])
@@ -55,18 +45,15 @@ def cycle_html(cycle: Cycle) -> str:
 
 def sweep_html(sweep: Sweep) -> str:
     """The first rows as a table, and the plot."""
-    from watchsim.render.study_plot import plot_sweep
-    from watchsim.render.style import small_png
-
     count = len(sweep.rows)
     lines = [f"{count} {'point' if count == 1 else 'points'}", "" if sweep.whole else "interrupted: points are missing"]
     if not count:
         return card(f"Sweep of {sweep.title}", lines)
-    head = [*map(_name, sweep.axes), *map(_heading, sweep.outputs), "verdict"]
+    head = [*map(axis_label, sweep.axes), *map(output_label, sweep.outputs), "verdict"]
     rows = [
         [
-            *(_value(axis, row) for axis in sweep.axes),
-            *(_number(row[one.column]) for one in sweep.outputs),
+            *(_value(usual_value(axis, row[axis.key]), 6) for axis in sweep.axes),
+            *(_value(row[one.column], 5) for one in sweep.outputs),
             row["verdict"] or "",
         ]
         for row in sweep.rows[:ROWS]
@@ -86,16 +73,16 @@ def sweep_html(sweep: Sweep) -> str:
 
 def sensitivity_html(found: Sensitivity) -> str:
     """What matters most, and the plot."""
-    from watchsim.render.study_plot import plot_sensitivity
-    from watchsim.render.style import small_png
-
     count, outputs = len(found.effects), found.outputs
     lines = [f"{count} {'quantity' if count == 1 else 'quantities'}", "" if found.whole else "interrupted: some are missing"]
     if not count:
         return card(f"What matters in {found.title}", lines)
-    head = ["change", *map(_heading, found.outputs)]
+    head = ["change", *map(output_label, outputs)]
     rows = [
-        [f"{one.quantity.key} +{one.quantity.change_words}", *(_number(one.of(o.column, one.quantity.change)) for o in outputs)]
+        [
+            f"{one.quantity.key} +{one.quantity.change_words}",
+            *(_value(one.of(o.column, one.quantity.change), 5) for o in outputs),
+        ]
         for one in found.effects[:ROWS]
     ]
     shown = table(head, rows, f"the first {ROWS} of {count} quantities" if count > ROWS else "")
@@ -103,31 +90,14 @@ def sensitivity_html(found: Sensitivity) -> str:
     return card(f"What matters in {found.title}", lines, shown, element("div", image(bars, "Effects as bars", SHOWN)))
 
 
-def _heading(output: Output) -> str:
-    return f"{output.label} ({output.unit})" if output.unit else output.label
+def _value(value: float | str | None, digits: int) -> str:
+    return "" if value is None else value if isinstance(value, str) else minus(f"{value:.{digits}g}")
 
-
-def _name(axis: Axis) -> str:
-    return f"{axis.key} ({axis.usual})" if axis.usual else axis.key
-
-
-def _value(axis: Axis, row: Any) -> str:
-    value = row[axis.key]
-    if isinstance(value, str):
-        return value
-    return f"{to(value, axis.usual) if axis.usual else value:.6g}".replace("-", "−")
-
-
-def _number(value: float | None) -> str:
-    return "" if value is None else f"{value:.5g}".replace("-", "−")
-
-
-# What do values show of themselves in a notebook? A few lines and a small picture, in 30 kB at most.
 
 SIZE = (560, 315)
 COLOURS = 40  # of a picture: a palette makes it small
 NAMED = 8  # bodies
-DOTS = 120  # of a chart
+DOTS = 120  # of a series of a chart
 
 
 def scene_html(scene: Scene) -> str:
@@ -160,12 +130,8 @@ def beats_html(found: Beats) -> str:
     if len(found) < 3:
         return card(f"Beats of {found.body}", [_count(len(found), "half swing", "half swings")], None)
     unit, scale = ("°", float(np.degrees(1.0))) if found.angular else ("mm", 1e3)
-    step = -(-len(found) // DOTS) | 1  # odd, so that both directions stay in sight
-    dots = [
-        type(one)(one.name, one.x[::step], one.y[::step], one.look)
-        for one in both_ways(found, found.t, scale * found.amplitude)
-    ]
-    chart = scatter(dots, "time (s)", f"amplitude ({unit})", f"Amplitude of {len(found)} half swings")
+    dots = both_ways(found, found.t, scale * found.amplitude)
+    chart = scatter(dots, "time (s)", f"amplitude ({unit})", f"Amplitude of {len(found)} half swings", DOTS)
     return card(f"Beats of {found.body}", repr(found).strip("<>").split(": ", 1)[1].split("; "), chart)
 
 
@@ -173,14 +139,17 @@ def _timing(run: Trajectory) -> list[str]:
     if not swings(run.scene):
         return []
     found = beats(run)
-    means = averages(found, last_window(run, found.nominal_period))
-    values = (
-        ("amplitude", means.amplitude_deg, means.amplitude_deg_error, "°"),
-        ("rate", means.rate_s_per_d, means.rate_s_per_d_error, " s/d"),
-        ("beat error", means.beat_error_ms, means.beat_error_ms_error, " ms"),
-    )
-    told = [(name, *with_error(value, error, unit)) for name, value, error, unit in values if value is not None]
-    return [", ".join(" ".join(filter(None, parts)) for parts in told)] if told else []
+    return [", ".join(_means(averages(found, last_window(run, found.nominal_period))))]
+
+
+def _means(found: Cycle | Averages) -> list[str]:
+    """Amplitude, rate and beat error, each with its error, as far as they are known."""
+    values = ((label.lower(), getattr(found, name), getattr(found, f"{name}_error"), unit) for name, label, unit in AVERAGED)
+    return [
+        " ".join(filter(None, (name, *with_error(value, error, unit))))
+        for name, value, error, unit in values
+        if value is not None
+    ]
 
 
 def _count(number: int, one: str, more: str) -> str:
@@ -200,8 +169,6 @@ def _picture(run: Trajectory, window: Window, t: float) -> Markup | None:
     Image.fromarray(np.ascontiguousarray(pixels)).quantize(COLOURS).save(out, "PNG", optimize=True)
     return image(out.getvalue(), f"The mechanism at {t:g} s", SIZE[0] // 4 * 3)
 
-
-# How is a run played inside a notebook?
 
 HEIGHT = 640  # dots: picture, buttons, and the first plot
 

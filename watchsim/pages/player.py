@@ -1,4 +1,7 @@
-"""Which contacts are closed while a page plays, where, and how hard do they press?"""
+"""What does the player of a page need of a run: shapes, rows of the motion, events, contacts with their forces?
+
+Arrays travel as little-endian binary in base64: a fourth of the size of digits, and read back bit by bit.
+"""
 
 from __future__ import annotations
 
@@ -20,8 +23,8 @@ from watchsim.geometry.primitives import Arc
 from watchsim.render.marks import ContactMarks, Side, goes_round
 from watchsim.render.movie import busy
 from watchsim.render.palette import BLUED, FIXED, Finish, looks
-from watchsim.render.parts import Part, is_round, loops_of, outline, parts
-from watchsim.render.rows import kept_rows
+from watchsim.render.parts import Part, is_round, loops_of, outline, parts, spoke
+from watchsim.render.rows import kept_rows, off_line
 from watchsim.render.view import (
     COARSE,
     SHARES,
@@ -32,6 +35,7 @@ from watchsim.render.view import (
     View,
     Window,
     Zigzag,
+    bounds,
     hairsprings,
     recorded,
     room_of,
@@ -48,10 +52,6 @@ from watchsim.simulation.state import EventKind
 from watchsim.simulation.trajectory import Array, Trajectory, between
 from watchsim.storage.columns import rows_where
 from watchsim.units import metric
-
-# How do arrays travel in a page?
-#
-# As little-endian binary in base64: a fourth of the size of digits, and read back bit by bit.
 
 
 def doubles(values: ArrayLike) -> str:
@@ -73,10 +73,8 @@ def _text(values: np.ndarray) -> str:
     return base64.b64encode(np.ascontiguousarray(values).tobytes()).decode("ascii")
 
 
-# What does a page draw of every part?
-#
-# The very lines and arcs of the drawing, as codes and numbers for a canvas, and once more as a still picture in SVG, which
-# prints, and which stands there where a mail program runs no scripts.
+# Parts are the very lines and arcs of the drawing, as codes and numbers for a canvas, and once more as a still picture in SVG,
+# which prints, and which stands there where a mail program runs no scripts.
 
 MOVE, LINE, ARC, CLOSE = range(4)
 ROUGH = 1e-3  # of the picture: chords where only the order and the nesting of parts matter
@@ -156,8 +154,6 @@ def _number(metres: float) -> str:
     return f"{1e3 * metres:.6f}".rstrip("0").rstrip(".")
 
 
-# Which rows of a run must a page hold, so that every outline stands where the run has it?
-#
 # Each body keeps rows of its own: a locked wheel needs none while the balance swings. Between rows the page interpolates as
 # `Trajectory.sample` does, by quintics through q, u and a.
 
@@ -308,8 +304,6 @@ def _reach(run: Trajectory, body: Body) -> float:
     return max(float(np.hypot(points[:, 0], points[:, 1]).max()), *loads, 0.0)
 
 
-# When does something happen: events to step to, phases with names, and noises?
-
 WORDS = {
     EventKind.IMPACT: "impact",
     EventKind.CLOSE: "closes",
@@ -378,8 +372,6 @@ def named(found: list[Phase], window: Window) -> list[list[Any]]:
     return [[phase.name, phase.start, phase.end] for phase in found if phase.end > window[0] and phase.start < window[1]]
 
 
-# Which stretch of a run does its page play?
-
 BEATS = 10
 WHOLE = 0.95  # of what was recorded: nearly all of it is shown as all of it
 
@@ -398,8 +390,6 @@ def shown(run: Trajectory, window: Sequence[float] | None) -> Window:
         start = end - beats
     return stretch(run, (start, end)) if start < end else stretch(run, None)
 
-
-# Which contacts are closed while a page plays, where, and how hard do they press?
 
 EVENLY = 600  # instants besides those of rows and events at which forces are asked for
 MOST_TOUCHING = 6000  # instants in all
@@ -486,15 +476,8 @@ def _samples(told: Forces, number: int, stretches: list[Window]) -> dict[str, st
 
 def _thinned(t: Array, values: Array) -> NDArray[np.int64]:
     allowed = OFF * max(float(np.abs(values).max()), 1e-300)
+    return kept_rows(len(t), lambda i, j: bool(np.all(off_line(t, values, i, j) <= allowed)))
 
-    def fits(i: int, j: int) -> bool:
-        s = ((t[i + 1 : j] - t[i]) / (t[j] - t[i]))[:, None]
-        return bool(np.all(np.abs(values[i] + s * (values[j] - values[i]) - values[i + 1 : j]) <= allowed))
-
-    return kept_rows(len(t), fits)
-
-
-# What does the player of a page need to know of a run?
 
 WIDE, HIGH = 1280.0, 720.0  # of the picture by which up and the part to follow are chosen
 
@@ -584,15 +567,8 @@ def _body(run: Trajectory, window: Window, body: Body, look: Finish, rows: dict[
     if body.on is None and not carries and body.motion != "fixed":
         told["inertia"] = body.inertia if body.motion == "pivot" else body.mass
     if loops_of(body) and is_round(body):
-        told["spoke"] = _spoke(body)
+        told["spoke"] = list(spoke(body, size_of(body)))
     return told
-
-
-def _spoke(body: Body) -> list[float]:
-    """From where to where along its x axis a radius is drawn on a body whose turning could not be seen."""
-    radii = [edge.radius for loop in loops_of(body) if loop.hole for edge in loop.edges if hasattr(edge, "radius")]
-    bore, reach = max(radii, default=0.0), 0.5 * size_of(body)
-    return [bore, bore + 0.9 * (reach - bore)]
 
 
 def _view(run: Trajectory, window: Window) -> dict[str, Any]:
@@ -600,10 +576,11 @@ def _view(run: Trajectory, window: Window) -> dict[str, Any]:
     chosen: View = view(run, window, Frame(0.0, 0.0, WIDE, HIGH), None, None)
     points, _, traveller = room_of(run, window, None)
     free = not any(run.scene.gravity) and traveller is None
+    turns = (0.0, -0.5 * np.pi) if free else (chosen.turn,)
     told: dict[str, Any] = {
         "turn": chosen.turn,
         "free": free,  # up may be chosen to fit the screen
-        "boxes": [[turn, *_box(points, turn)] for turn in ((0.0, -0.5 * np.pi) if free else (chosen.turn,))],
+        "boxes": [[turn, *np.concatenate(bounds(points, turn)).tolist()] for turn in turns],
     }
     if chosen.follow is not None:
         told["follow"] = {
@@ -613,10 +590,3 @@ def _view(run: Trajectory, window: Window) -> dict[str, Any]:
             "sight": HIGH / chosen.scale,
         }
     return told
-
-
-def _box(points: Array, turn: float) -> list[float]:
-    """Least and largest x and y (m) of the points as the turned picture shows them."""
-    c, s = float(np.cos(turn)), float(np.sin(turn))
-    seen = points @ np.array([[c, s], [-s, c]])
-    return [*seen.min(axis=0).tolist(), *seen.max(axis=0).tolist()]

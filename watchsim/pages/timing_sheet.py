@@ -23,8 +23,6 @@ from watchsim.scene.scene import Scene
 from watchsim.simulation.trajectory import Array, Trajectory
 from watchsim.units import metric
 
-# What does the sheet say of the geometry of function: lock, draw, lift, drop, and the freedoms of the safety action?
-
 HEAD = ("quantity", "entry stone", "exit stone")
 STONES = "stones and wheel"
 MINUS, DASH = "\N{MINUS SIGN}", "\N{EN DASH}"
@@ -57,8 +55,6 @@ def _table(one: Table) -> Markup:
 def _printed(value: str) -> str:
     return DASH if value == "-" else value.replace("-", MINUS)
 
-
-# What was simulated, as a list that a person can check against a drawing?
 
 LONG = 6  # entries of a list that are written out
 LEFT_OUT = ("lock", "expect")  # shown elsewhere
@@ -96,8 +92,6 @@ def _told(value: Any) -> str:
 def _is_list(value: Any) -> bool:
     return isinstance(value, Sequence) and not isinstance(value, (str, bytes))
 
-
-# What does the sheet say of the phases of a beat?
 
 ORDER = ("unlock", "catch-up", "impulse", "drop", "run to banking", "recoil")
 COLOURS = (0, 1, 2, 3, 4, 0)
@@ -183,8 +177,6 @@ def _mean(values: Array) -> str:
     scatter = f" ± {spread:.{decimals}f}" if spread >= 0.5 * 10.0**-decimals else ""
     return f"{signed(float(np.mean(values)), decimals)}{scatter}"
 
-
-# What does the sheet say of amplitude, rate and beat error?
 
 AVERAGED = (("amplitude_deg", "Amplitude", "°"), ("rate_s_per_d", "Rate", " s/d"), ("beat_error_ms", "Beat error", " ms"))
 
@@ -284,8 +276,6 @@ def _tape(found: Beats) -> Array:
     rank = np.round((found.mark - found.mark[known[0]]) / half)
     return np.asarray(rank * half - (found.mark - found.mark[known[0]]))
 
-
-# What does the timing sheet of a page say? The numbers of summary.json, in a watchmaker's units and order.
 
 VERDICTS = {
     "ticks": ("good", "The watch ticks"),

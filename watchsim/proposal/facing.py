@@ -1,4 +1,8 @@
-"""How far apart is what can meet, at given angles of the bodies?"""
+"""Which surfaces face which, and how far apart are they at given angles of the bodies?
+
+Layers of two bodies face each other where they come within reach as the bodies turn: wheels and balances all the way, levers a
+little. What lies over each other in the drawing lies at different heights and cannot meet.
+"""
 
 from __future__ import annotations
 
@@ -7,19 +11,24 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from watchsim.geometry.primitives import Point
 from watchsim.mechanism.overlap import material, placed
-from watchsim.proposal.pieces import CLICK, DRIVER, FIXED, LEVER, OSCILLATOR, WHEEL, Piece, Region, facing_by_name
+from watchsim.proposal.pieces import (
+    CLICK,
+    DRIVER,
+    FIXED,
+    LEVER,
+    OSCILLATOR,
+    WHEEL,
+    Floats,
+    Piece,
+    Region,
+    facing_by_name,
+    united,
+)
 from watchsim.proposal.roles import Role
 
-# Which surfaces face which?
-#
-# Layers of two bodies that come within reach of each other as the bodies turn: wheels and balances all the way, levers a
-# little. What lies over each other in the drawing lies at different heights and cannot meet.
-
-Floats = NDArray[np.float64]
 SWING = math.radians(15.0)  # of a lever or click, to either side
 STEPS = 7
 MARGIN = 0.01  # of the whole size: what comes as near as this is taken to meet
@@ -37,6 +46,10 @@ class Facing:
     why: str
     overlap: float = 0.0
     by_name: bool = False
+
+    @property
+    def sides(self) -> tuple[tuple[Role, str], tuple[Role, str]]:
+        return (self.first, self.first_layer), (self.second, self.second_layer)
 
 
 def facings(roles: Sequence[Role], size: float) -> tuple[list[Facing], list[Facing]]:
@@ -56,13 +69,9 @@ def facings(roles: Sequence[Role], size: float) -> tuple[list[Facing], list[Faci
 
 def _lies_over(facing: Facing, roles: Sequence[Role]) -> bool:
     """Does a layer of the oscillator that covers a lever in the drawing meet a wheel? That is at the lever's height."""
-    sides = ((facing.first, facing.first_layer), (facing.second, facing.second_layer))
-    if {role.task for role, _ in sides} != {WHEEL, OSCILLATOR}:
-        return False
-    role, layer = next(side for side in sides if side[0].task == OSCILLATOR)
-    own = [piece for piece in role.part.pieces if piece.layer == layer]
-    levers = [piece for other in roles if other.task == LEVER for piece in other.part.pieces]
-    return any(_overlap(piece, other) > OVER for piece in own for other in levers)
+    layers = {role.task: role.part.on(layer) for role, layer in facing.sides}
+    levers = [piece for role in roles if role.task == LEVER for piece in role.part.pieces]
+    return set(layers) == {WHEEL, OSCILLATOR} and any(_overlap(p, q) > OVER for p in layers[OSCILLATOR] for q in levers)
 
 
 def named_facings(roles: Sequence[Role]) -> list[Facing]:
@@ -81,25 +90,14 @@ def named_facings(roles: Sequence[Role]) -> list[Facing]:
 
 def _misses(one: Role, other: Role) -> bool:
     """What turns all the way passes what stands still; it would end there."""
-    return (
-        {one.task, other.task} <= {WHEEL, DRIVER, OSCILLATOR, FIXED}
-        and FIXED in (one.task, other.task)
-        and not _anchor(one, other)
-    )
-
-
-def _anchor(one: Role, other: Role) -> bool:
-    return "anchor" in (one.name, other.name)
+    tasks = {one.task, other.task}
+    return FIXED in tasks <= {WHEEL, DRIVER, OSCILLATOR, FIXED} and "anchor" not in (one.name, other.name)
 
 
 def _facing(one: Role, a: str, other: Role, b: str, size: float) -> Facing | None:
-    first = [piece for piece in one.part.pieces if piece.layer == a]
-    second = [piece for piece in other.part.pieces if piece.layer == b]
-    overlap = max(_overlap(p, q) for p in first for q in second)
-    if overlap > OVER:
-        return None
-    near = MARGIN * size
-    if not any(_reach(one, p, other, q, near) for p in first for q in second):
+    pairs = [(p, q) for p in one.part.on(a) for q in other.part.on(b)]
+    overlap = max(_overlap(p, q) for p, q in pairs)
+    if overlap > OVER or not any(_reach(one, p, other, q, MARGIN * size) for p, q in pairs):
         return None
     named = facing_by_name(a, b)
     why = "by their names, and they come within reach" if named else "they come within reach of each other"
@@ -117,14 +115,14 @@ def turns_fully(role: Role) -> bool:
 
 def _reach(one: Role, p: Piece, other: Role, q: Piece, near: float) -> bool:
     if turns_fully(one) and turns_fully(other):
-        (low, high), (lower, higher) = (_ring(piece, _at(role)) for piece, role in ((p, one), (q, other)))
+        (low, high), (lower, higher) = (_ring(piece.points, _at(role)) for piece, role in ((p, one), (q, other)))
         apart = math.dist(_at(one), _at(other))
         return high + higher + near >= apart and apart + min(high, higher) + near >= max(low, lower)
     if turns_fully(other):
         one, p, other, q = other, q, one, p
     if turns_fully(one):
-        low, high = _ring(p, _at(one))
-        ranges = [_ring_of(points, _at(one)) for points in _swung(other, q)]
+        low, high = _ring(p.points, _at(one))
+        ranges = [_ring(points, _at(one)) for points in _swung(other, q)]
         return any(least <= high + near and most >= low - near for least, most in ranges)
     placed_p, placed_q = ([_region(piece, points) for points in _swung(role, piece)] for role, piece in ((one, p), (other, q)))
     return any(first.distance(second) <= near for first in placed_p for second in placed_q)
@@ -148,22 +146,11 @@ def about(points: Floats, centre: Point, angle: float) -> Floats:
 
 
 def _region(piece: Piece, points: Floats) -> Region:
-    parts, at = [], 0
-    for ring, hole in piece.rings:
-        if not hole:
-            parts += material([(points[at : at + len(ring)], False)])
-            at += len(ring)
-    whole = parts[0]
-    for part in parts[1:]:
-        whole = whole.union(part)
-    return whole
+    ends = np.cumsum([len(ring) for ring, hole in piece.rings if not hole])
+    return united(part for ring in np.split(points, ends[:-1]) for part in material([(ring, False)]))
 
 
-def _ring(piece: Piece, centre: Point) -> tuple[float, float]:
-    return _ring_of(piece.points, centre)
-
-
-def _ring_of(points: Floats, centre: Point) -> tuple[float, float]:
+def _ring(points: Floats, centre: Point) -> tuple[float, float]:
     """The least and the largest distance of an outline from a point."""
     start, step = points[:-1] - np.array(centre), np.diff(points, axis=0)
     length = np.maximum((step**2).sum(axis=1), 1e-30)
@@ -172,23 +159,11 @@ def _ring_of(points: Floats, centre: Point) -> tuple[float, float]:
     return float(nearest), float(np.hypot(*(points - np.array(centre)).T).max())
 
 
-# How far apart is what can meet, at given angles of the bodies?
-
-
-def overlaps(facings: Sequence[Facing], angles: dict[str, float]) -> bool:
-    return clearance(facings, angles) <= 0.0
-
-
 def clearance(facings: Sequence[Facing], angles: dict[str, float]) -> float:
     """The least distance of what can meet, m; 0 where something overlaps."""
     least = math.inf
     for facing in facings:
-        first = [
-            _turned(facing.first, piece, angles) for piece in facing.first.part.pieces if piece.layer == facing.first_layer
-        ]
-        second = [
-            _turned(facing.second, piece, angles) for piece in facing.second.part.pieces if piece.layer == facing.second_layer
-        ]
+        first, second = ([_turned(role, piece, angles) for piece in role.part.on(layer)] for role, layer in facing.sides)
         least = min([least, *(float(p.distance(q)) for p in first for q in second)])
         if least <= 0.0:
             break
@@ -199,8 +174,4 @@ def _turned(role: Role, piece: Piece, angles: dict[str, float]) -> Region:
     angle = angles.get(role.name, 0.0)
     if angle == 0.0 or role.part.centre is None:
         return piece.region
-    parts = material([(about(points, role.part.centre.at, angle), hole) for points, hole in piece.rings])
-    whole = parts[0]
-    for part in parts[1:]:
-        whole = whole.union(part)
-    return whole
+    return united(material([(about(points, role.part.centre.at, angle), hole) for points, hole in piece.rings]))

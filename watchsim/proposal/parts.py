@@ -1,4 +1,8 @@
-"""Does a part work on one side of a wheel only, as a click does, and which way is it pressed into the teeth?"""
+"""Which pieces make up one body?
+
+Pieces about one centre, pieces whose layers name one part, and pieces that lie in each other. What is left over and shows no
+centre stands still.
+"""
 
 from __future__ import annotations
 
@@ -15,8 +19,10 @@ from watchsim.proposal.pieces import (
     FIXED,
     LEVER,
     MANY,
+    NONE,
     OSCILLATOR,
     SURE,
+    WEAK,
     WHEEL,
     Centre,
     Mark,
@@ -32,8 +38,6 @@ from watchsim.proposal.pieces import (
     part_word,
     tokens,
 )
-
-# What is a body in the making: which pieces, about which centre, of which kind?
 
 
 @dataclass(eq=False)
@@ -54,6 +58,9 @@ class Part:
     def layers(self) -> list[str]:
         return list(dict.fromkeys(piece.layer for piece in self.pieces))
 
+    def on(self, layer: str) -> list[Piece]:
+        return [piece for piece in self.pieces if piece.layer == layer]
+
     @property
     def file(self) -> int:
         return self.pieces[0].file
@@ -73,17 +80,15 @@ def join(parts: list[Part], together: Callable[[Part, Part], bool], why: str) ->
 
 def unite(part: Part, other: Part, why: str) -> None:
     part.pieces += other.pieces
-    worth = [centre for centre in (part.centre, other.centre) if centre is not None]
-    part.centre = max(worth, key=lambda centre: centre.worth, default=None)
-    part.kind = _united(part.kind, other.kind)
+    part.centre = surest((part, other))
+    # An anchor with its pendulum, or a lever with its own balance, is the oscillator.
+    part.kind = OSCILLATOR if {part.kind, other.kind} == {LEVER, OSCILLATOR} else part.kind or other.kind
     part.why = list(dict.fromkeys([*part.why, *other.why, why]))
 
 
-def _united(first: str | None, second: str | None) -> str | None:
-    """What an anchor with its pendulum, or a lever with its own balance, is: the oscillator."""
-    if {first, second} == {LEVER, OSCILLATOR}:
-        return OSCILLATOR
-    return first or second
+def surest(parts: Iterable[Part]) -> Centre | None:
+    """Of the centres of some parts the one that is best founded."""
+    return max((part.centre for part in parts if part.centre is not None), key=lambda centre: centre.worth, default=None)
 
 
 def are_apart(one: Part, other: Part) -> bool:
@@ -94,7 +99,7 @@ def are_apart(one: Part, other: Part) -> bool:
     return bool(first) and bool(second) and not set(first) & set(second)
 
 
-# To which body do pieces belong that show no centre: which do they lie in, or next to?
+# Where pieces belong that show no centre: to what they lie in, or next to.
 
 INSIDE = 0.3  # of a piece in the material of a body: it belongs to it
 BORDER = 0.2  # of a piece's outline on that of a body: it belongs to it
@@ -160,14 +165,6 @@ def _share(part: Part, other: Part) -> float:
     return most
 
 
-def nearest_to_each_other(one: Part, other: Part, parts: Sequence[Part]) -> bool:
-    """Is no other body, of a kind that the names allow, nearer to what has no centre yet?"""
-    loose, body = (one, other) if one.centre is None else (other, one)
-    if body.centre is None:
-        return True
-    return _nearest(loose, parts) is body
-
-
 def _nearest(loose: Part, parts: Sequence[Part]) -> Part | None:
     bodies = [part for part in parts if part.centre is not None and not are_apart(loose, part)]
     return min(bodies, key=lambda part: _distance(loose, part), default=None)
@@ -203,9 +200,6 @@ def _is_wheel(part: Part) -> bool:
     return part.kind == WHEEL or any(piece.turned is not None and is_toothed(piece.turned) for piece in part.pieces)
 
 
-# How many teeth has a part, and which one is the wheel where names do not say so?
-
-
 def teeth_of(part: Part) -> int:
     """How often the part's outermost toothed piece comes back onto itself in a turn; 0 where none does."""
     toothed = [piece.turned for piece in part.pieces if piece.turned is not None and is_toothed(piece.turned)]
@@ -226,12 +220,6 @@ def call_wheel(parts: Sequence[Part]) -> None:
         wheel = max(free, key=teeth_of)
         wheel.kind = WHEEL
         wheel.why.append(f"it comes back onto itself {teeth_of(wheel)} times in a turn, and nothing else is a wheel")
-
-
-# Which pieces make up one body?
-#
-# Pieces about one centre, pieces whose layers name one part, and pieces that lie in each other. What is left over and shows no
-# centre stands still.
 
 
 def parts_of(sources: Sequence[Source], pieces: Sequence[Piece]) -> list[Part]:
@@ -256,7 +244,7 @@ def _in_one_drawing(source: Source, pieces: Sequence[Piece], alone: bool) -> lis
     join(parts, _same_kind(parts), "the names of their layers belong to the same kind of part")
     call_wheel(parts)
     take_in(parts)
-    if all(_turns_about(parts, mark) for mark in marks):  # no pivot is left for a body that only a feature's name tells of
+    if not _idle(parts, marks):  # no pivot is left for a body that only a feature's name tells of
         take_in_misnamed(parts)
     join(parts, _one_layer(parts), "they lie on one layer")
     _give_marks(parts, marks)
@@ -291,11 +279,9 @@ def _of_one_file(source: Source, parts: list[Part], marks: Sequence[Mark]) -> li
     if kind == FIXED:
         return [Part(pieces, None, kind, why=why)]
     if marks:
-        return [
-            Part(pieces, Centre(marks[0].at, 3, f"the drawing marks it on layer {marks[0].layer}", marks[0]), kind, why=why)
-        ]
-    centres = [part.centre for part in parts if part.centre is not None]
-    whole = Part(pieces, max(centres, key=lambda centre: centre.worth, default=None), kind, why=why)
+        centre = Centre(marks[0].at, SURE, f"the drawing marks it on layer {marks[0].layer}", marks[0])
+        return [Part(pieces, centre, kind, why=why)]
+    whole = Part(pieces, surest(parts), kind, why=why)
     whole.centre = whole.centre or _own_centre(whole)
     return [whole]
 
@@ -338,13 +324,17 @@ def _one_layer(parts: Sequence[Part]) -> Callable[[Part, Part], bool]:
             return False
         there = [part for part in parts if shared[0] in part.layers]
         centres = [part.centre for part in there if part.centre is not None]
-        return len(there) < len(parts) and len(centres) <= 1 and nearest_to_each_other(one, other, parts)
+        loose, body = (one, other) if one.centre is None else (other, one)
+        nearest = body.centre is None or _nearest(loose, parts) is body
+        return len(there) < len(parts) and len(centres) <= 1 and nearest
 
     return together
 
 
-def _turns_about(parts: Sequence[Part], mark: Mark) -> bool:
-    return any(part.centre is not None and math.dist(mark.at, part.centre.at) <= BESIDE for part in parts)
+def _idle(parts: Sequence[Part], marks: Sequence[Mark]) -> list[Mark]:
+    """The marks about which nothing turns."""
+    places = [part.centre.at for part in parts if part.centre is not None]
+    return [mark for mark in marks if all(math.dist(mark.at, at) > BESIDE for at in places)]
 
 
 def _above_others(parts: Sequence[Part], marks: Sequence[Mark]) -> list[Part]:
@@ -371,13 +361,14 @@ def _both_left_over(one: Part, other: Part) -> bool:
 
 def _give_marks(parts: list[Part], marks: Sequence[Mark]) -> None:
     """To each mark about which nothing turns yet the nearest part without a centre."""
-    taken = [part.centre.at for part in parts if part.centre is not None]
-    for mark in marks:
+    for mark in _idle(parts, marks):
         free = [part for part in parts if part.centre is None and part.kind != FIXED]
-        if any(math.dist(mark.at, at) <= BESIDE for at in taken) or not free:
-            continue
+        if not free:
+            break
         nearest = min(free, key=lambda part: _away(part, mark.at))
-        nearest.centre = Centre(mark.at, 1, f"layer {mark.layer} marks it, and this part is the nearest without a centre", mark)
+        nearest.centre = Centre(
+            mark.at, WEAK, f"layer {mark.layer} marks it, and this part is the nearest without a centre", mark
+        )
     join(parts, _one_centre, "they have the same centre")
 
 
@@ -391,7 +382,7 @@ def _own_centre(part: Part) -> Centre:
     if holes:
         return holes[0]
     largest = max(part.pieces, key=lambda piece: piece.area)
-    return Centre(largest.centroid, 0, "the centre of area of its largest outline: nothing in the drawing shows a pivot")
+    return Centre(largest.centroid, NONE, "the centre of area of its largest outline: nothing in the drawing shows a pivot")
 
 
 def _distinct(marks: Iterable[Mark]) -> list[Mark]:
@@ -402,7 +393,7 @@ def _distinct(marks: Iterable[Mark]) -> list[Mark]:
     return found
 
 
-# Does a part work on one side of a wheel only, as a click does, and which way is it pressed into the teeth?
+# A click works on one side of a wheel only.
 
 SWING = math.radians(15.0)  # to either side: what is an anchor has its other pallet in the teeth by then
 STEP = math.radians(0.1)
@@ -421,7 +412,7 @@ def is_one_sided(part: Part, wheel: Part) -> bool:
     toothed = toothing(wheel)
     if part.centre is None or toothed is None:
         return False
-    ways = [_nearest_one_sided(part, toothed.centre, angle)[0] < toothed.outer for angle in (-SWING, SWING)]
+    ways = [_closest(part, toothed.centre, angle)[0] < toothed.outer for angle in (-SWING, SWING)]
     return ways[0] != ways[1]
 
 
@@ -429,8 +420,8 @@ def nose_of(part: Part, wheel: Part) -> Nose:
     """The place of the part nearest to the wheel's centre, as it is drawn."""
     toothed = toothing(wheel)
     assert part.centre is not None and toothed is not None
-    _, place = _nearest_one_sided(part, toothed.centre, 0.0)
-    closer = _nearest_one_sided(part, toothed.centre, STEP)[0] < _nearest_one_sided(part, toothed.centre, -STEP)[0]
+    _, place = _closest(part, toothed.centre, 0.0)
+    closer = _closest(part, toothed.centre, STEP)[0] < _closest(part, toothed.centre, -STEP)[0]
     return Nose(1 if closer else -1, math.dist(part.centre.at, place))
 
 
@@ -439,7 +430,7 @@ def toothing(wheel: Part) -> Turned | None:
     return max((piece.turned for piece in wheel.pieces if piece.turned is not None), key=lambda one: one.outer, default=None)
 
 
-def _nearest_one_sided(part: Part, centre: Point, angle: float) -> tuple[float, Point]:
+def _closest(part: Part, centre: Point, angle: float) -> tuple[float, Point]:
     """The least distance of the part's outlines from a point once it is turned by `angle`, and where it is."""
     assert part.centre is not None
     pivot = part.centre.at

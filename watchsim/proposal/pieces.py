@@ -1,11 +1,16 @@
-"""About which point does a piece turn, as far as it shows by itself?"""
+"""Which pieces of material do drawings hold, what do their names say, and about which points do they turn?
+
+What is inserted as a block gets layers of its own, named after the block: scenes choose outlines by layer. A piece is an outer
+outline with its holes; equal pieces that stand around a centre, such as single teeth, are one piece.
+"""
 
 from __future__ import annotations
 
+import functools
 import math
 import re
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -23,10 +28,6 @@ from watchsim.geometry.loops import Loop, extents, winding
 from watchsim.geometry.primitives import Arc, Point
 from watchsim.geometry.solids import area, section
 from watchsim.mechanism.overlap import chord_points, material, placed
-
-# What do the drawings hold, block by block?
-#
-# What is inserted as a block gets layers of its own, named after the block: scenes choose outlines by layer.
 
 CROSSING = "crossing"  # the code of a finding
 LIKELY = (0.5e-3, 1.0)  # m across: a drawing without units within these is taken to be in millimetres, else in inches
@@ -60,32 +61,31 @@ class Source:
     @property
     def crowded(self) -> frozenset[str]:
         """Layers on which outlines cross and nothing else is wrong: parts drawn over each other."""
-        found = self.drawing.findings
-        others = {f.layer for f in found if f.severity == "error" and f.code != CROSSING}
-        return frozenset(layer for layer in self._with_errors() if layer not in others)
+        return self._with_errors() - self._with_errors(besides=CROSSING)
 
-    def _with_errors(self) -> frozenset[str]:
-        return frozenset(f.layer for f in self.drawing.findings if f.severity == "error" and f.layer is not None)
+    def _with_errors(self, besides: str = "") -> frozenset[str]:
+        errors = (f for f in self.drawing.findings if f.severity == "error" and f.code != besides)
+        return frozenset(f.layer for f in errors if f.layer is not None)
 
 
 def read_source(path: Path) -> Source:
     """The drawing in a file; whatever is wrong with it is among its findings."""
-    content = read_content(path, path.suffix.lower().lstrip("."), None, FIT)
+    ending = path.suffix.lower().lstrip(".")
+    content = read_content(path, ending, None, FIT)
     units = None
     if content.strokes and content.units is None:
         units = _likely_unit(content)
-        content = read_content(path, path.suffix.lower().lstrip("."), units, FIT)
+        content = read_content(path, ending, units, FIT)
     blocks: dict[str, str] = {}
     if len(content.inserted) > 1:
         content, blocks = _by_blocks(content)
-    drawing = assembled(path, path.suffix.lower().lstrip("."), lambda: content, SNAP)
+    drawing = assembled(path, ending, lambda: content, SNAP)
     return Source(path, drawing, units, blocks, tuple(_marks(drawing)))
 
 
 def _likely_unit(content: Content) -> str:
-    xs = [x for stroke in content.strokes for x, _ in (stroke.edge.start, stroke.edge.end)]
-    ys = [y for stroke in content.strokes for _, y in (stroke.edge.start, stroke.edge.end)]
-    across = max(max(xs) - min(xs), max(ys) - min(ys))
+    ends = [end for stroke in content.strokes for end in (stroke.edge.start, stroke.edge.end)]
+    across = max(max(column) - min(column) for column in zip(*ends, strict=True))
     return "mm" if LIKELY[0] <= across <= LIKELY[1] else "inch"
 
 
@@ -126,19 +126,12 @@ def is_mark(layer: str) -> bool:
 
 def size_of(drawings: Sequence[Drawing]) -> float:
     """How large everything together is, m."""
-    boxes = [box for drawing in drawings if (box := extents((*drawing.loops, *drawing.open_chains)))]
-    if not boxes:
-        return 0.0
-    low = min(box[0] for box in boxes), min(box[1] for box in boxes)
-    high = max(box[2] for box in boxes), max(box[3] for box in boxes)
-    return max(high[0] - low[0], high[1] - low[1])
+    box = extents(chain for drawing in drawings for chain in (*drawing.loops, *drawing.open_chains))
+    return max(box[2] - box[0], box[3] - box[1]) if box else 0.0
 
-
-# By which part of a turn does an outline come back onto itself, and about which centre?
-#
-# The centre of area of a wheel is its centre, whatever its teeth are like.
 
 Floats = NDArray[np.float64]
+Region = Any  # a polygon, or several, of shapely
 MOST = 400  # teeth
 MISS = 2e-3  # of the radius: what a drawing may fail to be alike
 ROUND = 0.02  # of the radius: what differs less from a circle is a disc
@@ -155,7 +148,10 @@ class Turned:
 
 
 def turned(loops: Sequence[Loop], rings: Sequence[Floats]) -> Turned | None:
-    """Of closed outlines together, with their chords; None where they are a disc, or come back only after a whole turn."""
+    """Of closed outlines together, with their chords; None where they are a disc, or come back only after a whole turn.
+
+    The centre of area of a wheel is its centre, whatever its teeth are like.
+    """
     centre = section(loops).centroid
     around = [points - np.array(centre) for points in rings]
     points = np.concatenate(around)
@@ -175,17 +171,15 @@ def turned(loops: Sequence[Loop], rings: Sequence[Floats]) -> Turned | None:
     return None
 
 
-def _region(rings: Sequence[Floats]) -> Any:
-    parts = material([(points, False) for points in rings])
-    whole = parts[0]
-    for part in parts[1:]:
-        whole = whole.union(part)
-    return whole
+def united(parts: Iterable[Region]) -> Region:
+    return functools.reduce(lambda one, other: one.union(other), parts)
 
 
-# What does the name of a layer, a block or a file say about the part drawn there?
-#
-# In the languages of watchmaking: English, German, French.
+def _region(rings: Sequence[Floats]) -> Region:
+    return united(material([(points, False) for points in rings]))
+
+
+# What names of layers, blocks and files say, in the languages of watchmaking: English, German, French.
 
 WHEEL, LEVER, OSCILLATOR, CLICK, DRIVER, FIXED = "wheel", "lever", "oscillator", "click", "driver", "fixed"
 
@@ -257,12 +251,6 @@ def facing_by_name(first: str, second: str) -> bool:
     return any((a & one and b & other) or (a & other and b & one) for one, other in FACING)
 
 
-# Which pieces of material does a drawing hold?
-#
-# A piece is an outer outline with its holes. Equal pieces that stand around a centre, such as single teeth, are one piece.
-
-Region = Any  # a polygon, or several, of shapely
-
 DEVIATION = 2e-5  # of an outline's length: of chords from arcs
 LEAST = 1e-7  # of the square of its length: a piece with less area has no material
 ALIKE = 1e-3  # relative: areas and lengths of equal pieces
@@ -285,29 +273,21 @@ class Piece:
     @cached_property
     def points(self) -> Floats:
         """(n, 2) of all outer outlines, m."""
-        return np.concatenate([chord_points(loop, self._deviation) for loop in self.loops if not loop.hole])
+        return np.concatenate([points for points, hole in self.rings if not hole])
 
     @cached_property
     def rings(self) -> list[tuple[Floats, bool]]:
-        return [(chord_points(loop, self._deviation), loop.hole) for loop in self.loops]
+        deviation = DEVIATION * max(self.loops[0].length, 1e-6)
+        return [(chord_points(loop, deviation), loop.hole) for loop in self.loops]
 
     @cached_property
     def region(self) -> Region:
-        parts = material(self.rings)
-        whole = parts[0]
-        for part in parts[1:]:
-            whole = whole.union(part)
-        return whole
+        return united(material(self.rings))
 
     @cached_property
     def filled(self) -> Region:
         """The region without its holes."""
-        outer = [(points, False) for points, hole in self.rings if not hole]
-        parts = material(outer)
-        whole = parts[0]
-        for part in parts[1:]:
-            whole = whole.union(part)
-        return whole
+        return _region([points for points, hole in self.rings if not hole])
 
     @property
     def has_material(self) -> bool:
@@ -321,8 +301,7 @@ class Piece:
     @cached_property
     def turned(self) -> Turned | None:
         """By which part of a turn, about which centre, its outer outlines come back onto themselves; None of a disc."""
-        outer = [loop for loop in self.loops if not loop.hole]
-        return turned(outer, [chord_points(loop, self._deviation) for loop in outer])
+        return turned([loop for loop in self.loops if not loop.hole], [points for points, hole in self.rings if not hole])
 
     @cached_property
     def arcs(self) -> list[Arc]:
@@ -336,11 +315,6 @@ class Piece:
     @cached_property
     def length(self) -> float:
         return sum(loop.length for loop in self.loops)
-
-    @property
-    def _deviation(self) -> float:
-        first = self.loops[0]
-        return DEVIATION * max(first.length, 1e-6)
 
 
 def pieces_of(file: int, loops: Sequence[Loop], crowded: frozenset[str] = frozenset()) -> list[Piece]:
@@ -379,19 +353,18 @@ def _is_hole(hole: Loop, outer: Loop, loops: Sequence[Loop]) -> bool:
 
 
 def _filled(loop: Loop) -> Region:
-    return material([(chord_points(loop, DEVIATION * loop.length), False)])[0]
+    return _region([chord_points(loop, DEVIATION * loop.length)])
 
 
 def _around_a_centre(pieces: Sequence[Piece]) -> list[Piece]:
     """The same, with equal pieces that stand around a centre put together."""
     classes: list[list[Piece]] = []
     for piece in pieces:
-        for group in classes:
-            if _alike(piece, group[0]):
-                group.append(piece)
-                break
-        else:
+        alike = next((group for group in classes if _alike(piece, group[0])), None)
+        if alike is None:
             classes.append([piece])
+        else:
+            alike.append(piece)
     found: list[Piece] = []
     for group in classes:
         loops = tuple(loop for piece in group for loop in piece.loops)
@@ -405,14 +378,10 @@ def _alike(one: Piece, other: Piece) -> bool:
     return math.isclose(one.area, other.area, rel_tol=ALIKE) and math.isclose(one.length, other.length, rel_tol=ALIKE)
 
 
-# About which point does a piece turn, as far as it shows by itself?
-
 SAME = 2e-6  # m: two centres this close are one, as in drawings with three decimals of a millimetre
 SHARE = 0.1  # of a piece's outline must lie on arcs about a mark for these to name its centre
 MANY, DEEP = 8, 0.65  # a wheel: so many teeth, or slots so deep (least by largest radius) that it is no nut and no square stone
-
-# How much a centre is worth
-SURE, LIKELY_CENTRES, WEAK = 3, 2, 1
+SURE, USUAL, WEAK, NONE = 3, 2, 1, 0  # how much a centre is worth
 
 
 @dataclass(frozen=True)
@@ -434,18 +403,16 @@ def centre_of(piece: Piece, marks: Sequence[Mark]) -> Centre | None:
     best = max(shares, key=lambda pair: pair[0], default=(0.0, None))
     symmetry = piece.turned
     if best[1] is not None and best[0] >= SHARE * piece.length:
-        return Centre(
-            best[1].at, SURE, f"the drawing marks a point there, on layer {best[1].layer}, with arcs about it", best[1]
-        )
+        why = f"the drawing marks a point there, on layer {best[1].layer}, with arcs about it"
+        return Centre(best[1].at, SURE, why, best[1])
     if symmetry is not None and is_toothed(symmetry):
         mark = next((one for one in marks if math.dist(one.at, symmetry.centre) <= SAME), None)
         at = symmetry.centre if mark is None else mark.at
         return Centre(at, SURE, f"the outline comes back onto itself {symmetry.fold} times in a turn about it", mark)
     inside = [mark for mark in marks if holds(piece, mark.at)]
     if len(inside) == 1:
-        return Centre(
-            inside[0].at, LIKELY_CENTRES, f"the one point of layer {inside[0].layer} that lies in its outline", inside[0]
-        )
+        why = f"the one point of layer {inside[0].layer} that lies in its outline"
+        return Centre(inside[0].at, USUAL, why, inside[0])
     return None if marks else hole_of(piece)
 
 
@@ -460,7 +427,7 @@ def hole_of(piece: Piece) -> Centre | None:
     if not circles:
         return None
     nearest = min(circles, key=lambda circle: math.dist(circle.centre, piece.centroid))
-    return Centre(nearest.centre, LIKELY_CENTRES, f"the centre of its hole of radius {1e3 * nearest.radius:.4g} mm")
+    return Centre(nearest.centre, USUAL, f"the centre of its hole of radius {1e3 * nearest.radius:.4g} mm")
 
 
 def holds(piece: Piece, place: Point) -> bool:

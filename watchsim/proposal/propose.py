@@ -18,13 +18,11 @@ from watchsim.mechanism.overlap import overlaps
 from watchsim.proposal.facing import Facing, facings, named_facings
 from watchsim.proposal.parts import parts_of
 from watchsim.proposal.pieces import CLICK, OSCILLATOR, WHEEL, Piece, Source, is_mark, pieces_of, read_source, size_of
-from watchsim.proposal.roles import Role, apart, lean_of, roles_of
-from watchsim.proposal.start import PIVOT, Amount, Amounts, Drawn, Start, amounts_of, drawn, side_by_side, start_of
+from watchsim.proposal.roles import Role, apart, first_of, lean_of, roles_of
+from watchsim.proposal.start import PIVOT, Amounts, Drawn, Start, amounts_of, drawn, side_by_side, start_of
 from watchsim.scene.errors import SceneError
 from watchsim.scene.load import load
 from watchsim.scene.scene import Scene
-
-# How is a proposed scene written, so that its reader sees what is a guess and why?
 
 FRICTION, RESTITUTION = 0.12, 0.2
 DURATION = "5 s"
@@ -69,6 +67,11 @@ class Plan:
         """A layer of a body as a contact names it."""
         return f"{role.name}.{self.drawn[role.part.file].layers[role.name, layer]}"
 
+    def note(self, key: str, value: str, why: str) -> str:
+        """A comment of the scene that says what is guessed."""
+        self.guesses.append(Guess(key, value, why))
+        return f"# guess: {value}; {why}"
+
     def guess(self, key: str, value: str, why: str) -> str:
         """A line of the scene with its comment."""
         self.guesses.append(Guess(key, value, why))
@@ -104,11 +107,9 @@ def _body(plan: Plan, role: Role) -> Iterator[str]:
     drawing, source, key = plan.drawn[role.part.file], plan.sources[role.part.file], f"bodies.{role.name}"
     yield f"[{key}]"
     if role.task:
-        plan.guesses.append(Guess(key, TASKS[role.task], role.why))
-        yield f"# guess: {TASKS[role.task]}; {role.why}"
+        yield plan.note(key, TASKS[role.task], role.why)
     if role.part.why:
-        plan.guesses.append(Guess(f"{key}.layers", "one body", "; ".join(role.part.why)))
-        yield f"# guess: one body; {'; '.join(role.part.why)}"
+        yield plan.note(f"{key}.layers", "one body", "; ".join(role.part.why))
     yield f"drawing = {_text(drawing.name)}"
     if source.units is not None and not drawing.is_sorted:
         yield plan.guess(f"{key}.units", _text(source.units), "the drawing does not say; in this unit its size is likely")
@@ -122,10 +123,8 @@ def _body(plan: Plan, role: Role) -> Iterator[str]:
     if place is None:
         yield 'position = "as drawn"'
     else:
-        value = _pair(place)
-        yield plan.guess(
-            f"{key}.position", value, "these drawings do not show where the parts stand; they are put side by side"
-        )
+        why = "these drawings do not show where the parts stand; they are put side by side"
+        yield plan.guess(f"{key}.position", _pair(place), why)
     if not role.moves:
         yield 'motion = "fixed"'
         return
@@ -134,10 +133,8 @@ def _body(plan: Plan, role: Role) -> Iterator[str]:
         yield plan.guess(f"{key}.angle", _text(f"{math.degrees(angle):.6g}°"), plan.start.why.get(role.name, "as needed"))
     if plan.amounts.turned == role.name:
         yield 'motion = "driven"'
-        way = "clockwise" if plan.direction < 0 else "counter-clockwise"
-        yield plan.guess(
-            f"{key}.velocity", _text(f"{60 * plan.direction} rpm"), f"it turns {way}, evenly, and moves the wheel on"
-        )
+        why = f"it turns {'clockwise' if plan.direction < 0 else 'counter-clockwise'}, evenly, and moves the wheel on"
+        yield plan.guess(f"{key}.velocity", _text(f"{60 * plan.direction} rpm"), why)
         return
     inertia = plan.amounts.inertia[role.name]
     yield plan.guess(f"{key}.inertia", _text(f"{1e10 * inertia.value:.3g} mg·cm²"), inertia.why)
@@ -152,10 +149,9 @@ def _pivot(plan: Plan, role: Role, key: str) -> Iterator[str]:
     mark = centre.mark
     if drawing.is_sorted:
         value = _text(f"{role.name.upper()}_{PIVOT}")
-    elif mark is not None and mark.single:
-        value = _text(mark.layer)
     elif mark is not None:
-        value = _text(f"{'point' if mark.point else 'circle'} near {_bare(centre.at)}")
+        x, y = map(_mm, centre.at)
+        value = _text(mark.layer if mark.single else f"{'point' if mark.point else 'circle'} near [{x}, {y}]")
     else:
         value = _pair(centre.at)
     yield plan.guess(f"{key}.pivot", value, centre.why)
@@ -163,17 +159,12 @@ def _pivot(plan: Plan, role: Role, key: str) -> Iterator[str]:
 
 def _touching(plan: Plan, role: Role) -> set[str]:
     layers = plan.drawn[role.part.file].layers
-    found = set()
-    for facing in plan.facings:
-        for one, layer in ((facing.first, facing.first_layer), (facing.second, facing.second_layer)):
-            if one is role:
-                found.add(layers[role.name, layer])
-    return found
+    return {layers[role.name, layer] for facing in plan.facings for one, layer in facing.sides if one is role}
 
 
 def _forces(plan: Plan) -> Iterator[str]:
     amounts = plan.amounts
-    swinging = next((role for role in plan.roles if role.task == OSCILLATOR), None)
+    swinging = first_of(plan.roles, OSCILLATOR)
     if swinging is not None and amounts.vph is not None and amounts.q_factor is not None:
         yield from ("", "[[springs]]")
         yield plan.guess("springs.0.body", _text(swinging.name), f"the oscillator: {swinging.why}")
@@ -186,24 +177,19 @@ def _forces(plan: Plan) -> Iterator[str]:
         rest = plan.start.angles.get(spring.body, 0.0) + spring.way
         yield from ("", "[[springs]]", f"body = {_text(spring.body)}")
         yield plan.guess(f"springs.{k}.stiffness", _text(f"{1e6 * spring.stiffness.value:.3g} µN·m/rad"), spring.stiffness.why)
-        yield plan.guess(
-            f"springs.{k}.rest", _text(f"{math.degrees(rest):.6g}°"), "in the teeth: it presses the click on the wheel"
-        )
+        why = "in the teeth: it presses the click on the wheel"
+        yield plan.guess(f"springs.{k}.rest", _text(f"{math.degrees(rest):.6g}°"), why)
     if amounts.driven is not None and amounts.torque is not None and amounts.turned is None:
         value = plan.direction * amounts.torque.value
         yield from ("", "[[torques]]", f"body = {_text(amounts.driven)}")
         why = f"{plan.direction_why}; {amounts.torque.why}"
         yield plan.guess("torques.0.value", _text(f"{1e6 * value:.3g} µN·m"), why)
     if amounts.driven is not None and amounts.viscous is not None:
-        yield from _slowed(plan, amounts.viscous)
-
-
-def _slowed(plan: Plan, viscous: Amount) -> Iterator[str]:
-    for k, role in enumerate(
-        role for role in plan.roles if role.moves and role.task != CLICK and role.name != plan.amounts.turned
-    ):
-        yield from ("", "[[damping]]", f"body = {_text(role.name)}")
-        yield plan.guess(f"damping.{k}.viscous", _text(f"{1e9 * viscous.value:.3g} nN·m·s/rad"), viscous.why)
+        moving = [role for role in plan.roles if role.moves and role.task != CLICK and role.name != amounts.turned]
+        for k, role in enumerate(moving):
+            yield from ("", "[[damping]]", f"body = {_text(role.name)}")
+            value, why = amounts.viscous.value, amounts.viscous.why
+            yield plan.guess(f"damping.{k}.viscous", _text(f"{1e9 * value:.3g} nN·m·s/rad"), why)
 
 
 def _contact(plan: Plan, facing: Facing, number: int) -> Iterator[str]:
@@ -214,7 +200,7 @@ def _contact(plan: Plan, facing: Facing, number: int) -> Iterator[str]:
 
 
 def _sides(plan: Plan, facing: Facing) -> str:
-    return _texts([plan.side(facing.first, facing.first_layer), plan.side(facing.second, facing.second_layer)])
+    return _texts([plan.side(*side) for side in facing.sides])
 
 
 def _text(value: str) -> str:
@@ -225,10 +211,6 @@ def _texts(values: Sequence[Any]) -> str:
     return json.dumps(list(values), ensure_ascii=False)
 
 
-def _bare(place: tuple[float, float]) -> str:
-    return f"[{_mm(place[0])}, {_mm(place[1])}]"
-
-
 def _pair(place: tuple[float, float]) -> str:
     return _texts([_mm(place[0]), _mm(place[1])])
 
@@ -236,8 +218,6 @@ def _pair(place: tuple[float, float]) -> str:
 def _mm(value: float) -> str:
     return f"{round(1e3 * value, 9) + 0.0:.12g} mm"
 
-
-# Which scene do these drawings suggest?
 
 SCENE = "scene.toml"
 MOST_PIECES = 2000  # more is a picture, not a mechanism
@@ -270,19 +250,24 @@ def propose(paths: Sequence[Path]) -> Proposal:
     roles = roles_of(parts)
     size = size_of([source.drawing for source in sources])
     places = side_by_side(roles, len(sources))
-    met, others = _facings(roles, size, bool(places))
+    met, others = (named_facings(roles), []) if places else facings(roles, size)
     unlikely = [(facing, "the names of other surfaces of these bodies fit better") for facing in others]
-    plan = _plan(paths, sources, roles, met, unlikely, size, places, left_out)
+    lean, why = _direction(first_of(roles, WHEEL), {role.task for role in roles})
+    start = start_of(roles, () if places else met, lean or -1)
+    amounts = amounts_of(roles, size, start.swing)
+    title = ", ".join(path.stem for path in paths)
+    copies = drawn(sources, roles)
+    plan = Plan(title, sources, copies, roles, met, unlikely, start, amounts, places, lean or -1, why, left_out)
     while True:
         files = {drawing.name: drawing.data for drawing in plan.drawn}
-        files["scene.toml"] = scene_text(plan).encode()
+        files[SCENE] = scene_text(plan).encode()
         wrong = _overlapping(files)
         if not wrong:
             break
         kept = [facing for k, facing in enumerate(plan.facings) if k not in wrong]
         gone = [(facing, "they overlap at the start") for k, facing in enumerate(plan.facings) if k in wrong]
         plan = replace(plan, facings=kept, others=[*plan.others, *gone], guesses=[])
-    sides = tuple((plan.side(f.first, f.first_layer), plan.side(f.second, f.second_layer)) for f in plan.facings)
+    sides = tuple((plan.side(*facing.sides[0]), plan.side(*facing.sides[1])) for facing in plan.facings)
     return Proposal(files, tuple(plan.guesses), tuple(roles), sides, tuple(left_out))
 
 
@@ -310,35 +295,12 @@ def _fault(drawing: Drawing, layer: str) -> str:
 
 
 def _why_nothing(sources: Sequence[Source]) -> str:
-    told = []
+    reasons = []
     for source in sources:
         faults = [one.message for one in source.drawing.findings if one.severity == "error"]
-        told.append(f"{source.path}: {faults[0] if faults else 'it holds no closed outline'}")
-    return "\n".join(
-        [*told, "A scene is made of closed outlines. `watchsim inspect` says what each drawing holds, and where it is open"]
-    )
-
-
-def _facings(roles: Sequence[Role], size: float, apart: bool) -> tuple[list[Facing], list[Facing]]:
-    return (named_facings(roles), []) if apart else facings(roles, size)
-
-
-def _plan(
-    paths: Sequence[Path],
-    sources: Sequence[Source],
-    roles: Sequence[Role],
-    met: Sequence[Facing],
-    unlikely: Sequence[tuple[Facing, str]],
-    size: float,
-    places: dict[str, tuple[float, float]],
-    left_out: Sequence[str],
-) -> Plan:
-    wheel = next((role for role in roles if role.task == WHEEL), None)
-    lean, why = _direction(wheel, {role.task for role in roles})
-    start = start_of(roles, () if places else met, lean or -1)
-    amounts = amounts_of(roles, size, start.swing)
-    title = paths[0].stem if len(paths) == 1 else ", ".join(path.stem for path in paths)
-    return Plan(title, sources, drawn(sources, roles), roles, met, unlikely, start, amounts, places, lean or -1, why, left_out)
+        reasons.append(f"{source.path}: {faults[0] if faults else 'it holds no closed outline'}")
+    advice = "A scene is made of closed outlines. `watchsim inspect` says what each drawing holds, and where it is open"
+    return "\n".join([*reasons, advice])
 
 
 def _direction(wheel: Role | None, tasks: set[str]) -> tuple[int, str]:
@@ -361,6 +323,6 @@ def _overlapping(files: dict[str, bytes]) -> set[int]:
         try:
             scene: Scene = load(Path(folder) / SCENE)
         except SceneError as error:
-            told = "\n".join(f"{fault.key}: {fault.message}" for fault in error.faults)
-            raise NothingToPropose(f"the outlines cannot be used as they are drawn\n{told}") from error
+            faults = "\n".join(f"{fault.key}: {fault.message}" for fault in error.faults)
+            raise NothingToPropose(f"the outlines cannot be used as they are drawn\n{faults}") from error
         return {met.contact for met in overlaps(scene)} if scene.contacts else set()

@@ -1,4 +1,8 @@
-"""Which part is driven, which drives, which swings, which holds, and which stands between them?"""
+"""Which part is driven, which drives, which swings, which holds, and which stands between them?
+
+Before, each outline on a layer that parts of several bodies share gets a layer of its own: a scene chooses by layer what can
+touch.
+"""
 
 from __future__ import annotations
 
@@ -10,12 +14,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from watchsim.geometry.primitives import Point
 from watchsim.proposal.parts import Part, is_one_sided, teeth_of
-from watchsim.proposal.pieces import CLICK, DRIVER, FIXED, LEVER, OSCILLATOR, WHEEL, is_toothed, part_of, part_word
-
-# How do outlines of several bodies on one layer get layers of their own?
-#
-# A scene chooses by layer what can touch. Where a layer holds parts of several bodies, each outline gets one.
+from watchsim.proposal.pieces import CLICK, DRIVER, FIXED, LEVER, OSCILLATOR, WHEEL, Floats, is_toothed, part_of, part_word
 
 APART = "#"  # between the name of a layer and the number of an outline on it
 
@@ -41,35 +42,30 @@ def plain(layer: str) -> tuple[str, str]:
     return (name, number) if number.isdigit() else (layer, "")
 
 
-# Which way do the teeth of a wheel lean?
-#
-# Their tips stand ahead of their roots in the direction in which an escape wheel is made to turn: its teeth lock with the tip.
-
 TIP, ROOT = 0.9, 0.25  # of a tooth's height: where its middle is taken
 SYMMETRIC = 0.03  # of a pitch: teeth that lean less do not lean
 
 
 def lean_of(part: Part) -> int:
-    """+1 where the tips stand ahead counter-clockwise of the roots, -1 clockwise; 0 where the teeth are symmetric."""
-    toothed = [piece for piece in part.pieces if piece.turned is not None and is_toothed(piece.turned)]
+    """+1 where the tips of a wheel's teeth stand ahead counter-clockwise of their roots, -1 clockwise; 0 where symmetric.
+
+    An escape wheel is made to turn that way: its teeth lock with the tip.
+    """
+    toothed = [(piece, piece.turned) for piece in part.pieces if piece.turned is not None and is_toothed(piece.turned)]
     if not toothed:
         return 0
-    piece = max(toothed, key=lambda one: one.turned.outer if one.turned else 0.0)
-    symmetry = piece.turned
-    assert symmetry is not None
+    piece, symmetry = max(toothed, key=lambda pair: pair[1].outer)
     height = symmetry.outer - symmetry.inner
     middles = [_middle(piece.rings, symmetry.centre, symmetry.inner + share * height, symmetry.fold) for share in (TIP, ROOT)]
-    if None in middles:
+    tip, root = middles
+    if tip is None or root is None:
         return 0
-    tip, root = (middle for middle in middles if middle is not None)
     pitch = 2.0 * math.pi / symmetry.fold
     way = (tip - root + 0.5 * pitch) % pitch - 0.5 * pitch
     return 0 if abs(way) < SYMMETRIC * pitch else 1 if way > 0.0 else -1
 
 
-def _middle(
-    rings: list[tuple[NDArray[np.float64], bool]], centre: tuple[float, float], radius: float, fold: int
-) -> float | None:
+def _middle(rings: list[tuple[Floats, bool]], centre: Point, radius: float, fold: int) -> float | None:
     """The angle, modulo a pitch, of the middle of the material on a circle: the circular mean of what lies in it."""
     angles = np.linspace(0.0, 2.0 * math.pi, 64 * fold, endpoint=False)
     points = np.column_stack((centre[0] + radius * np.cos(angles), centre[1] + radius * np.sin(angles)))
@@ -82,7 +78,7 @@ def _middle(
     return float(np.angle(mean)) / fold if abs(mean) > 1e-6 else None
 
 
-def _inside(ring: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[np.bool_]:
+def _inside(ring: Floats, points: Floats) -> NDArray[np.bool_]:
     """Even-odd rule, all points at once."""
     x, y = points[:, 0], points[:, 1]
     inside = np.zeros(len(points), bool)
@@ -92,10 +88,9 @@ def _inside(ring: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[n
     return inside
 
 
-# Which part is driven, which drives, which swings, which holds, and which stands between them?
-
 FEWEST_TEETH = 8  # of an escape wheel; with fewer slots a wheel is driven step by step, as in a Geneva drive
 ROUNDISH = 0.4  # of its outlines on arcs about its pivot: a part that may turn through whole turns
+BY_NAME = "the names of its layers say so"
 NAMES = {WHEEL: "wheel", LEVER: "lever", OSCILLATOR: "balance", CLICK: "click", DRIVER: "driver", FIXED: "banking"}
 
 
@@ -114,19 +109,22 @@ class Role:
         return self.part.centre is not None and self.task != FIXED
 
 
+def first_of(roles: Sequence[Role], task: str) -> Role | None:
+    return next((role for role in roles if role.task == task), None)
+
+
 def roles_of(parts: Sequence[Part]) -> list[Role]:
     """The role of every part, wheels first, then lever, oscillator, click, others, and what stands still."""
     moving = [part for part in parts if part.centre is not None and part.kind != FIXED]
-    found = [Role(part, "", FIXED, _still(part)) for part in parts if part not in moving]
+    still = "nothing in the drawing shows a pivot of it"
+    found = [Role(part, "", FIXED, BY_NAME if part.kind == FIXED else still) for part in parts if part not in moving]
     wheels = [part for part in moving if part.kind in (WHEEL, None) and teeth_of(part) > 0]
     rest = [part for part in moving if part not in wheels]
     for part in wheels:
         count = teeth_of(part)
         found.append(Role(part, "", WHEEL, f"it comes back onto itself {count} times in a turn", count))
-    for part in list(rest):
-        if part.kind == WHEEL:
-            found.append(Role(part, "", WHEEL, "the names of its layers say so"))
-            rest.remove(part)
+    found += [Role(part, "", WHEEL, BY_NAME) for part in rest if part.kind == WHEEL]
+    rest = [part for part in rest if part.kind != WHEEL]
     for part in list(rest):
         why = _click(part, rest, wheels)
         if why is not None:
@@ -142,32 +140,26 @@ def roles_of(parts: Sequence[Part]) -> list[Role]:
         else:
             named = part.kind == LEVER
             task = LEVER if named or swinging is not None else DRIVER
-            found.append(Role(part, "", task, "the names of its layers say so" if named else "it turns and is no wheel"))
+            found.append(Role(part, "", task, BY_NAME if named else "it turns and is no wheel"))
     order = [DRIVER, WHEEL, LEVER, OSCILLATOR, CLICK, FIXED]
     found.sort(key=lambda role: order.index(role.task))
     _name(found)
     return found
 
 
-def _still(part: Part) -> str:
-    return "the names of its layers say so" if part.kind == FIXED else "nothing in the drawing shows a pivot of it"
-
-
 def _click(part: Part, rest: Sequence[Part], wheels: Sequence[Part]) -> str | None:
     """Why this part is a click; None where it is none."""
-    if part.kind == CLICK:
-        return "the names of its layers say so"
     alone = len(rest) == 1 and len(wheels) == 1 and not any(part_word(layer) for layer in part.layers)
-    if alone and is_one_sided(part, wheels[0]):
+    if part.kind != CLICK and alone and is_one_sided(part, wheels[0]):
         return "it comes into the teeth when it is turned one way, and clear of them the other way, unlike an anchor"
-    return None
+    return BY_NAME if part.kind == CLICK else None
 
 
 def _oscillator(rest: Sequence[Part], wheels: Sequence[Part]) -> tuple[Part, str] | None:
     """What swings: what is called so; else the roundest; a single part beside an escape wheel swings itself."""
     named = [part for part in rest if part.kind == OSCILLATOR]
     if named:
-        return named[0], "the names of its layers say so"
+        return named[0], BY_NAME
     if not wheels or max(teeth_of(part) for part in wheels) < FEWEST_TEETH:
         return None
     free = [part for part in rest if part.kind is None] or (list(rest) if len(rest) == 1 else [])

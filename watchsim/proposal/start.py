@@ -1,6 +1,8 @@
-"""At which angles can the bodies begin without standing in each other?
+"""At which angles do the bodies begin, how heavy are they, and what drives them, as far as drawings can say?
 
 Where the drawing shows teeth in stones, the wheel is turned within a pitch, and the lever a little, to where all is clear.
+Inertias, frequencies and torques are the likely ones: plates of steel, a balance as usual for the size, and a torque that makes
+up for what the oscillator loses in a beat.
 """
 
 from __future__ import annotations
@@ -8,7 +10,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -16,14 +18,10 @@ import numpy as np
 from watchsim.drawing.write import dxf_text
 from watchsim.geometry.primitives import Point
 from watchsim.geometry.solids import section
-from watchsim.proposal.facing import Facing, clearance, overlaps, turns_fully
+from watchsim.proposal.facing import Facing, clearance, turns_fully
 from watchsim.proposal.parts import Part, nose_of, toothing
 from watchsim.proposal.pieces import CLICK, DRIVER, LEVER, OSCILLATOR, WHEEL, Piece, Source, tokens
-from watchsim.proposal.roles import Role, plain
-
-# Which inertias, frequencies and torques are likely, where a drawing can say none?
-#
-# Plates of steel, a balance as usual for the size, and a torque that makes up for what the oscillator loses in a beat.
+from watchsim.proposal.roles import Role, first_of, plain
 
 STEEL = 7850.0  # kg/m³
 WATCH = 40e-3  # m: what is larger is a clock
@@ -75,9 +73,7 @@ def amounts_of(roles: Sequence[Role], size: float, swing: float) -> Amounts:
     thick = THICKNESS[watch]
     plate = f"its outlines as steel {1e3 * thick:g} mm thick"
     inertia = {role.name: Amount(_plate(role.part, thick), plate) for role in roles if role.moves}
-    wheel = next((role for role in roles if role.task == WHEEL), None)
-    lever = next((role for role in roles if role.task == LEVER), None)
-    swinging = next((role for role in roles if role.task == OSCILLATOR), None)
+    wheel, lever, swinging = (first_of(roles, task) for task in (WHEEL, LEVER, OSCILLATOR))
     if swinging is not None:
         inertia[swinging.name] = _oscillators(inertia, swinging, lever, wheel)
     driven = _driven(roles, wheel, swinging)
@@ -86,16 +82,10 @@ def amounts_of(roles: Sequence[Role], size: float, swing: float) -> Amounts:
     if swinging is None:
         torque = Amount(1e-6 if watch else 1e-4, "nothing in the drawing says how strong the drive is")
         slow = Amount(torque.value / (2.0 * math.pi * TURNS), f"so that {driven} comes to about {TURNS:g} turn per second")
-        return Amounts(
-            inertia,
-            None,
-            None,
-            torque if driven else None,
-            slow if driven else None,
-            driven,
-            _clicks(roles, wheel, torque.value),
-            turned,
-        )
+        springs = _clicks(roles, wheel, torque.value)
+        if driven is None:
+            return Amounts(inertia, None, None, None, None, None, springs, turned)
+        return Amounts(inertia, None, None, torque, slow, driven, springs, turned)
     beats = Amount(BEATS[watch], f"usual for {'a watch' if watch else 'a clock'} of this size ({1e3 * size:.3g} mm)")
     q = Amount(Q_FACTOR[watch], "usual; the escapement's own losses come on top")
     torque_amount = None
@@ -131,19 +121,16 @@ def _plate(part: Part, thickness: float) -> float:
 
 def _oscillators(inertia: dict[str, Amount], swinging: Role, lever: Role | None, wheel: Role | None) -> Amount:
     own = inertia[swinging.name]
+    light = "what is drawn is too light to be all of it"
     if lever is not None and own.value < LIGHT * inertia[lever.name].value:
-        return Amount(
-            max(BALANCE, LIGHT * inertia[lever.name].value), "a balance's; what is drawn is too light to be all of it"
-        )
+        return Amount(max(BALANCE, LIGHT * inertia[lever.name].value), f"a balance's; {light}")
     if lever is None and wheel is not None and own.value < HEAVY * inertia[wheel.name].value:
-        return Amount(
-            HEAVY * inertia[wheel.name].value, "with its pendulum or balance; what is drawn is too light to be all of it"
-        )
+        return Amount(HEAVY * inertia[wheel.name].value, f"with its pendulum or balance; {light}")
     return own
 
 
 def _driven(roles: Sequence[Role], wheel: Role | None, swinging: Role | None) -> str | None:
-    driver = next((role for role in roles if role.task == DRIVER), None)
+    driver = first_of(roles, DRIVER)
     if driver is not None and (wheel is None or wheel.teeth < STEPPED):
         return driver.name
     if wheel is not None:
@@ -151,7 +138,7 @@ def _driven(roles: Sequence[Role], wheel: Role | None, swinging: Role | None) ->
     return next((role.name for role in roles if role.moves and role is not swinging), None)
 
 
-# Where do lever and wheel stand when a watch waits to be unlocked?
+# Lever and wheel stand as when a watch waits to be unlocked.
 
 FINE = 96  # steps of a pitch, and of the way to a bank
 MOST_BANK, USUAL_BANK = math.radians(20.0), math.radians(5.0)
@@ -166,15 +153,13 @@ def locked(
     Of an anchor that swings itself the wheel alone is turned on. None where there is no such place.
     """
     wheel = next((role for role in roles if role.task == WHEEL and role.teeth), None)
-    levers = [role for role in roles if role.task == LEVER]
-    swinging = next((role for role in roles if role.task == OSCILLATOR), None)
+    lever, swinging = first_of(roles, LEVER), first_of(roles, OSCILLATOR)
     if wheel is None or swinging is None:
         return None
     why = {}
     if turns_fully(swinging):
-        if not levers:
+        if lever is None:
             return None
-        lever = levers[0]
         still = [f for f in facings if lever in (f.first, f.second) and not (f.first.moves and f.second.moves)]
         reach = _first_touch(lambda angle: clearance(still, {**angles, lever.name: angle}), MOST_BANK) if still else USUAL_BANK
         angles = {**angles, lever.name: max(reach - BACK, 0.0)}
@@ -215,7 +200,7 @@ def _edge(open_at: Callable[[float], float], free: float, blocked: float) -> flo
     return free
 
 
-# Where do parts go that were drawn each by itself, so that none lies on another?
+# Parts that were drawn each by itself are put side by side.
 
 OVER = 0.3  # of the smaller area: parts of two files that share more were not drawn where they belong
 SAME = 2e-6  # m, of pivots
@@ -232,7 +217,7 @@ def side_by_side(roles: Sequence[Role], files: int) -> dict[str, tuple[float, fl
     places = {role.name: (0.0, 0.0) for role in roles if not role.moves}
     x = 0.0
     for role in (role for role in roles if role.moves):
-        at = role.part.centre.at if role.moves and role.part.centre is not None else (0.0, 0.0)
+        at = role.part.centre.at if role.part.centre is not None else (0.0, 0.0)
         around = [math.dist(at, (px, py)) for piece in role.part.pieces for px, py in piece.points.tolist()]
         reach = ROOM * max(around)
         x = x + reach if any(other.moves and other.name in places for other in roles) else 0.0
@@ -242,24 +227,17 @@ def side_by_side(roles: Sequence[Role], files: int) -> dict[str, tuple[float, fl
 
 
 def _on_top_of_each_other(roles: Sequence[Role]) -> bool:
-    for k, one in enumerate(roles):
-        for other in roles[k + 1 :]:
-            if one.part.file == other.part.file:
-                continue
-            centres = one.part.centre, other.part.centre
-            if centres[0] is not None and centres[1] is not None and math.dist(centres[0].at, centres[1].at) <= SAME:
-                return True
-            shared = max(
-                p.region.intersection(q.region).area / min(p.area, q.area) for p in one.part.pieces for q in other.part.pieces
-            )
-            if shared > OVER:
-                return True
+    for one, other in itertools.combinations([role.part for role in roles], 2):
+        if one.file == other.file:
+            continue
+        if one.centre is not None and other.centre is not None and math.dist(one.centre.at, other.centre.at) <= SAME:
+            return True
+        if any(p.region.intersection(q.region).area > OVER * min(p.area, q.area) for p in one.pieces for q in other.pieces):
+            return True
     return False
 
 
-# Which drawings does the scene need, and on which layers of them do the bodies lie?
-#
-# The drawing as it is, where every layer belongs to one body; else a copy of its outlines in which it does.
+# The scene takes the drawing as it is, where every layer belongs to one body; else a copy of its outlines in which it does.
 
 PIVOT = "PIVOT"
 
@@ -307,15 +285,9 @@ def _layer_name(body: str, layer: str, count: int) -> str:
     if count == 1:
         return body
     name, number = plain(layer)
-    words = [
-        body,
-        *([name.strip()] if tokens(name) else []),
-        *([number] if number and (number != "1" or not tokens(name)) else []),
-    ]
-    return "_".join(words)
+    numbered = number and (number != "1" or not tokens(name))
+    return "_".join([body, *([name.strip()] if tokens(name) else []), *([number] if numbered else [])])
 
-
-# At which angles can the bodies begin without standing in each other?
 
 WHEEL_STEPS = 48  # of a pitch
 LEVER_ANGLES = np.radians((0.0, 3.0, -3.0, 5.0, -5.0, 8.0, -8.0, 11.0, -11.0)).tolist()
@@ -337,24 +309,23 @@ class Start:
 
 def start_of(roles: Sequence[Role], facings: Sequence[Facing], direction: int) -> Start:
     """Free angles, as far as they can be found: the lever at its bank, a tooth of the wheel, driven that way, at the stone."""
-    swinging = next((role for role in roles if role.task == OSCILLATOR), None)
-    levers = [role for role in roles if role.task == LEVER]
-    rest, rest_why = _rest(swinging, levers, facings)
+    swinging = first_of(roles, OSCILLATOR)
+    rest, rest_why = _rest(swinging, first_of(roles, LEVER), facings)
     angles = dict.fromkeys((role.name for role in roles if role.moves), 0.0)
     why: dict[str, str] = {}
     swing = 0.0
     if swinging is not None:
         ways = SWINGS if turns_fully(swinging) else ANCHOR_SWINGS
         own = [facing for facing in facings if swinging in (facing.first, facing.second)]
-        clear = [way for way in ways if turns_fully(swinging) and not overlaps(own, {**angles, swinging.name: rest - way})]
-        swing = clear[0] if clear else ways[0]
+        clear = (way for way in ways if turns_fully(swinging) and clearance(own, {**angles, swinging.name: rest - way}) > 0.0)
+        swing = next(clear, ways[0])
         angles[swinging.name] = rest - swing
         why[swinging.name] = "let go at the end of a swing" if turns_fully(swinging) else "let go a little beside its rest"
     waiting = locked(roles, facings, angles, direction)
     if waiting is not None:
-        angles, told = waiting
-        why.update(told)
-    elif overlaps(facings, angles):
+        angles, reasons = waiting
+        why.update(reasons)
+    elif clearance(facings, angles) <= 0.0:
         found = _searched(roles, facings, angles)
         if found is not None:
             for name in [name for name in found if found[name] != angles[name]]:
@@ -363,15 +334,12 @@ def start_of(roles: Sequence[Role], facings: Sequence[Facing], direction: int) -
     return Start(angles, why, rest, rest_why, swing)
 
 
-def _rest(swinging: Role | None, levers: Sequence[Role], facings: Sequence[Facing]) -> tuple[float, str]:
+def _rest(swinging: Role | None, lever: Role | None, facings: Sequence[Facing]) -> tuple[float, str]:
     """How far the balance must be turned for its pin to point at the lever."""
     drawn = "as it is drawn"
-    if swinging is None or not turns_fully(swinging) or not levers or swinging.part.centre is None:
+    if swinging is None or not turns_fully(swinging) or lever is None or swinging.part.centre is None:
         return 0.0, drawn
-    lever = levers[0]
-    touching = {
-        layer for f in facings for role, layer in ((f.first, f.first_layer), (f.second, f.second_layer)) if role is swinging
-    }
+    touching = {layer for facing in facings for role, layer in facing.sides if role is swinging}
     at = np.array(swinging.part.centre.at)
     pins = [piece for piece in swinging.part.pieces if piece.layer in touching and _is_pin(piece, at)]
     if not pins or lever.part.centre is None:
@@ -402,24 +370,12 @@ def _searched(roles: Sequence[Role], facings: Sequence[Facing], angles: dict[str
         elif role.task == WHEEL and role.teeth:
             pitch = 2.0 * math.pi / role.teeth
             ways[role.name] = (np.arange(WHEEL_STEPS) * pitch / WHEEL_STEPS).tolist()
-    names = [name for name in ways if name not in _wheels(roles)]
-    wheels = [name for name in ways if name in _wheels(roles)][:1]
+    wheels = [role.name for role in roles if role.task == WHEEL and role.name in ways]
+    names = [name for name in ways if name not in wheels]
     for others in sorted(itertools.product(*(ways[name] for name in names)), key=lambda found: sum(map(abs, found))):
         tried = {**angles, **dict(zip(names, others, strict=True))}
-        found = [(clearance(facings, candidate), candidate) for candidate in _with(tried, wheels, ways)]
-        best = max(found, key=lambda pair: pair[0])
-        if best[0] > 0.0:
-            return best[1]
+        candidates = [{**tried, wheels[0]: angle} for angle in ways[wheels[0]]] if wheels else [tried]
+        open_by, best = max(((clearance(facings, one), one) for one in candidates), key=lambda pair: pair[0])
+        if open_by > 0.0:
+            return best
     return None
-
-
-def _wheels(roles: Sequence[Role]) -> set[str]:
-    return {role.name for role in roles if role.task == WHEEL}
-
-
-def _with(angles: dict[str, float], wheels: Sequence[str], ways: dict[str, list[float]]) -> Iterable[dict[str, float]]:
-    if not wheels:
-        yield angles
-        return
-    for angle in ways[wheels[0]]:
-        yield {**angles, wheels[0]: angle}

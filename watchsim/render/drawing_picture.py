@@ -1,7 +1,8 @@
 """How does a drawing look to the program?
 
 Outlines by layer, their material tinted, pivots as crosses, and a numbered red circle at every fault, so that the designer
-sees what was read and where to mend it. The numbers are those of the text report.
+sees what was read and where to mend it. The numbers are those of the text report. Faults a hair apart share a circle; a number
+stands beside its circle where it covers the least of other circles and numbers, further out with a thin line in a crowd.
 """
 
 from __future__ import annotations
@@ -9,31 +10,29 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+from matplotlib.legend import Legend
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch, PathPatch
+from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.findings import ORDER, Finding
 from watchsim.drawing.material import layer_roles
-from watchsim.geometry.loops import Box as Box_of_loops
-from watchsim.geometry.loops import extents, polyline
+from watchsim.geometry.loops import Box, extents, polyline
 from watchsim.geometry.primitives import Arc, Point
 from watchsim.render.palette import BACKGROUND, FAINT, GRID, INK
+from watchsim.render.parts import compound
 from watchsim.storage.write import write_file
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-    from matplotlib.legend import Legend
-
-
-# Where do the numbered circles and their numbers go, so that every number can be read?
-#
-# Faults a hair apart share a circle. Numbers are put beside their circle where they cover the least of other circles and
-# numbers, further out with a thin line where it is crowded. All in points on the paper.
-
+# Lengths of the marks are in points on the paper.
 FAULT = "#d0021b"
 CIRCLED = 80  # more circles would cover the part
 RADIUS = 6.5  # of a circle
@@ -43,13 +42,9 @@ REACHES = (10.5, 21.0, 35.0, 50.0, 65.0, 80.0)  # from the centre of a circle to
 WAYS = 12
 GROUPS = 2  # numbers or ranges of numbers written at one circle
 
-Box = tuple[float, float, float, float]
-
 
 def fault_circles(axes: Axes, findings: Sequence[Finding]) -> int:
     """Draws circles with the numbers of the report, the gravest first; returns how many faults with a place have none."""
-    from matplotlib.figure import Figure
-
     numbered = sorted(enumerate(findings, 1), key=lambda pair: ORDER.index(pair[1].severity))
     placed = [(k, x, y) for k, finding in numbered for x, y in places(finding)]
     if not placed:
@@ -139,8 +134,6 @@ def best_box(
 
 
 def _draw(axes: Axes, place: Point, centre: NDArray[np.float64], text: str, box: Box) -> None:
-    from matplotlib.patheffects import withStroke
-
     x, y = place
     middle = (0.5 * (box[0] + box[2]) - centre[0], 0.5 * (box[1] + box[3]) - centre[1])
     ring = 2.0 * RADIUS
@@ -161,8 +154,6 @@ def _draw(axes: Axes, place: Point, centre: NDArray[np.float64], text: str, box:
     )
 
 
-# How does a drawing look to the program?
-
 COLOURS = ("#2f5d8a", "#a8780a", "#2e7d57", "#7b4a9e", "#b0562c", "#3f8f98", "#5f6b78", "#96527a", "#6f7f1f", "#8a4b4b")
 SIZE = (9.0, 7.2)  # inches
 DPI = 150
@@ -172,6 +163,7 @@ TINT = 0.16  # opacity of material
 HATCHES = ("", "////", "....", "xxxx")  # of the material, for layers beyond the last colour
 BESIDE = 1.015  # of the width of the axes: where the legend begins
 LISTED = 20  # layers in the legend
+NAMED = 60  # letters of the file's name
 
 
 def draw_drawing(drawing: Drawing, png_path: Path | str, centres: bool = False) -> None:
@@ -186,9 +178,6 @@ def draw_drawing(drawing: Drawing, png_path: Path | str, centres: bool = False) 
 
 def picture(drawing: Drawing, centres: bool = False) -> Figure:
     """The figure, on an Agg canvas; with `centres`, dots at the centres of all arcs that lie in the picture."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
     box = _frame(drawing)
     figure = Figure(figsize=_paper(box), facecolor=BACKGROUND, layout="constrained")
     FigureCanvasAgg(figure)
@@ -207,7 +196,7 @@ def picture(drawing: Drawing, centres: bool = False) -> Figure:
     return figure
 
 
-def _frame(drawing: Drawing) -> Box_of_loops:
+def _frame(drawing: Drawing) -> Box:
     """What the picture shows, in metres: everything drawn and a margin, never nothing."""
     box = extents((*drawing.loops, *drawing.open_chains))
     xs = [x for _, x, _ in drawing.points] + ([box[0], box[2]] if box else [])
@@ -218,7 +207,7 @@ def _frame(drawing: Drawing) -> Box_of_loops:
     return (min(xs) - margin, min(ys) - margin, max(xs) + margin, max(ys) + margin)
 
 
-def _paper(box: Box_of_loops) -> tuple[float, float]:
+def _paper(box: Box) -> tuple[float, float]:
     """A sheet of constant area in the shape of the part, within limits; room for scales and legend beside it."""
     ratio = (box[2] - box[0]) / (box[3] - box[1])
     side = math.sqrt(SIZE[0] * SIZE[1])
@@ -226,7 +215,7 @@ def _paper(box: Box_of_loops) -> tuple[float, float]:
     return (min(max(width, SHORTEST), LONGEST) + 2.2, min(max(height, SHORTEST), LONGEST) + 0.6)
 
 
-def _furnish(axes: Axes, drawing: Drawing, box: Box_of_loops) -> None:
+def _furnish(axes: Axes, drawing: Drawing, box: Box) -> None:
     """Scales in millimetres, equal both ways; the title says what was read and how large it is."""
     axes.set_facecolor("white")
     axes.set_aspect("equal")
@@ -244,11 +233,11 @@ def _furnish(axes: Axes, drawing: Drawing, box: Box_of_loops) -> None:
 
 
 def _title(drawing: Drawing) -> str:
-    box = extents((*drawing.loops, *drawing.open_chains))
+    name, box = _short(drawing.path.name, NAMED), extents((*drawing.loops, *drawing.open_chains))
     if box is None:
-        return f"{drawing.path.name}: nothing to show"
+        return f"{name}: nothing to show"
     size = f"{1e3 * (box[2] - box[0]):.4g} × {1e3 * (box[3] - box[1]):.4g} mm"
-    return f"{drawing.path.name}   {size}{'' if drawing.units else '   (units not stated, taken as mm)'}"
+    return f"{name}   {size}{'' if drawing.units else '   (units not stated, taken as mm)'}"
 
 
 class _Look(NamedTuple):
@@ -269,16 +258,12 @@ def _layer(axes: Axes, drawing: Drawing, look: _Look, role: str, deviation: floa
 
     A bore on a layer of its own is white, and what only marks a place has no tint.
     """
-    from matplotlib.collections import LineCollection
-    from matplotlib.patches import PathPatch
-    from matplotlib.path import Path as Curve
-
     layer, colour, hatch = look
     closed = [1e3 * polyline(loop, deviation) for loop in drawing.loops if loop.layer == layer]
     chains = [1e3 * polyline(loop, deviation) for loop in drawing.open_chains if loop.layer == layer]
     if closed:
         # Holes run the other way round, so the winding rule leaves them out.
-        curve = Curve(np.concatenate(closed), np.concatenate([_codes(len(points)) for points in closed]))
+        curve = compound(closed)
         if role == "material":
             axes.add_patch(PathPatch(curve, facecolor=colour, alpha=TINT, linewidth=0.0))
         elif role == "bore":
@@ -293,15 +278,6 @@ def _layer(axes: Axes, drawing: Drawing, look: _Look, role: str, deviation: floa
         axes.plot(*zip(*places, strict=True), "+", color=colour, markersize=13, markeredgewidth=1.6, zorder=4)
 
 
-def _codes(count: int) -> np.ndarray:
-    """Path codes of one outline whose last point repeats the first."""
-    from matplotlib.path import Path as Curve
-
-    codes = np.full(count, Curve.LINETO, dtype=Curve.code_type)
-    codes[0], codes[-1] = Curve.MOVETO, Curve.CLOSEPOLY
-    return codes
-
-
 def _centres(axes: Axes, drawing: Drawing, layer: str, colour: str) -> None:
     """A dot at the centre of every arc of the layer."""
     loops = [loop for loop in (*drawing.loops, *drawing.open_chains) if loop.layer == layer]
@@ -312,9 +288,6 @@ def _centres(axes: Axes, drawing: Drawing, layer: str, colour: str) -> None:
 
 def _legend(axes: Axes, drawing: Drawing, centres: bool) -> Legend:
     """Layer names beside the picture, and what crosses, dashes and circles mean where there are any."""
-    from matplotlib.lines import Line2D
-    from matplotlib.patches import Patch
-
     roles = layer_roles(drawing.loops)
     drawn = {loop.layer for loop in (*drawing.loops, *drawing.open_chains)}
 
@@ -338,20 +311,14 @@ def _legend(axes: Axes, drawing: Drawing, centres: bool) -> Legend:
         ring = Line2D([], [], marker="o", linestyle="none", markersize=10, markerfacecolor="none", markeredgecolor=FAULT)
         rows.append((ring, "fault: see the list"))
     handles, names = zip(*rows, strict=True)
-    legend = axes.legend(
-        handles,
-        names,
-        loc="upper left",
-        bbox_to_anchor=(BESIDE, 1.0),
-        borderaxespad=0.0,
-        frameon=False,
-        fontsize=9,
-        labelcolor=INK,
-    )
+    place: dict[str, Any] = {"loc": "upper left", "bbox_to_anchor": (BESIDE, 1.0), "borderaxespad": 0.0}
+    legend = axes.legend(handles, names, frameon=False, fontsize=9, labelcolor=INK, **place)
     for text in legend.get_texts():
         text.set_parse_math(False)
     return legend
 
 
-def _short(name: str) -> str:
-    return name if len(name) <= 24 else name[:23] + "…"
+def _short(name: str, most: int = 24) -> str:
+    """One line of at most so many letters: a name may be as long as the file."""
+    name = " ".join(name[: 4 * most].split())
+    return name if len(name) <= most else name[: most - 1] + "…"

@@ -1,4 +1,9 @@
-"""How large is a picture, and of which format: as asked, or as the mechanism is shaped?"""
+"""How do frames become a file, in how many colours, and how large are they?
+
+Raw frames are piped into the ffmpeg that comes with imageio-ffmpeg. The file gets its name only when the encoder has ended
+well, so that a full disk or an interrupt never leaves half a movie. A GIF has one palette for all frames: nothing flickers,
+unchanged pixels stay unchanged, and the file stays small.
+"""
 
 from __future__ import annotations
 
@@ -12,18 +17,13 @@ from typing import IO
 
 import numpy as np
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from watchsim.render.palette import LIGHT
 from watchsim.render.stage import DPI, Extras, shared_room
-from watchsim.render.view import Window, view
+from watchsim.render.view import Pixels, Window, view
 from watchsim.render.words import lay_out
 from watchsim.simulation.trajectory import Trajectory
 from watchsim.storage.write import write_file
-
-# Which 64 colours does a GIF need?
-#
-# One palette for all frames: nothing flickers, unchanged pixels stay unchanged, and the file stays small.
 
 COLOURS = 64
 PINNED = 24  # of these: the plain faces, exactly
@@ -76,13 +76,6 @@ def _with_table(colours: Pixels) -> Palette:
     table[((exact[:, 0] << (2 * BITS)) | (exact[:, 1] << BITS) | exact[:, 2])[::-1]] = np.arange(len(colours))[::-1]
     return Palette(colours, table)
 
-
-# How do frames become a file?
-#
-# Raw frames are piped into the ffmpeg that comes with imageio-ffmpeg. The file gets its name only when the encoder has ended
-# well, so that a full disk or an interrupt never leaves half a movie.
-
-Pixels = NDArray[np.uint8]
 
 ENDINGS = (".mp4", ".gif")
 AUDIO = "128k"  # bits per second of one channel
@@ -194,8 +187,6 @@ def _refusals(words: str) -> list[str]:
 def _reason(words: str) -> str:
     return (_refusals(words) or _lines(words) or ["the encoder stopped without a message"])[0]
 
-
-# How large is a picture, and of which format: as asked, or as the mechanism is shaped?
 
 AUTO = "auto"  # a size
 MP4_SIZE, GIF_SIZE = (1280, 720), (800, 450)

@@ -8,9 +8,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from watchsim.analysis.flows import pair_name
 from watchsim.analysis.forces import Forces, forces
@@ -21,35 +23,9 @@ from watchsim.render.marks import clock
 from watchsim.render.palette import looks
 from watchsim.render.phase_bands import name_key, shade
 from watchsim.render.rows import reduced
-from watchsim.render.style import (
-    CURVE,
-    FULL,
-    HEADING,
-    LABEL,
-    LETTER,
-    NARROW,
-    POINT,
-    SERIES,
-    SMALL,
-    Shown,
-    dress,
-    figure,
-    heading,
-    key,
-    limits,
-    panel,
-    title,
-)
 from watchsim.render.view import Window
 from watchsim.scene.scene import Scene
 from watchsim.simulation.trajectory import Array, Trajectory
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-
-# Which forces act over a stretch of time, between which bodies and in which bearings?
 
 MOST = 12_000  # instants; each takes a quarter of a millisecond
 FINE = 400  # instants at least
@@ -99,8 +75,6 @@ def _instants(run: Trajectory, span: Window) -> Array:
     return np.unique(np.concatenate((edges[:-1], before, np.linspace(span[0], before[-1], FINE))))
 
 
-# Which forces act at contacts and pivots over time?
-
 LEFT, RIGHT, OVER, TALL, BETWEEN, FOOT = 13.0, 3.0, 5.0, 23.0, 3.0, 7.0  # mm
 BEARINGS = "bearings"
 KEY = 5.0  # mm, of the names of phases
@@ -125,7 +99,7 @@ class Layout:
     wide: bool  # name and key stand side by side over a panel
 
 
-def plot_forces(run: Trajectory, window: Sequence[float] | None = None, width: float = FULL) -> Figure:
+def plot_forces(run: Trajectory, window: Sequence[float] | None = None, width: float = style.FULL) -> Figure:
     """Normal and friction force by pair of bodies, and the load of every bearing, over time.
 
     window  (from, to) in seconds; default the last two beats without their free oscillation, side by side, or where there are
@@ -143,21 +117,21 @@ def plot_forces(run: Trajectory, window: Sequence[float] | None = None, width: f
     rows = len(pairs) + bool(pivots)
     if not rows:
         raise ValueError("no contact is closed there, and nothing turns on a pivot: there are no forces to plot")
-    top = HEADING + (KEY if width >= NARROW else 2.0 * KEY) * bool(names)
+    top = style.HEADING + (KEY if width >= style.NARROW else 2.0 * KEY) * bool(names)
     wide = width / len(spans) - LEFT - RIGHT
     bearings = BEARINGS + left_out(run.scene)
     columns, lines = _key_beside(bearings, pivots, wide if wide >= ROOMY else width - LEFT - RIGHT)
     layout = Layout(pairs, pivots, bearings, _units(told), columns, raised=lines > 0, wide=wide >= ROOMY)
     tops = [top + k * (OVER + TALL + BETWEEN) + OVER for k in range(rows)]
     tops[-1] += lines * LINE
-    made = figure(width, tops[-1] + TALL + BETWEEN + FOOT)
-    heading(made, run.scene.title, "Forces at contacts, and loads of bearings")
+    made = style.figure(width, tops[-1] + TALL + BETWEEN + FOOT)
+    style.heading(made, run.scene.title, "Forces at contacts, and loads of bearings")
     if names:
-        name_key(made, names, HEADING)
+        name_key(made, names, style.HEADING)
     for c, (span, one) in enumerate(zip(spans, told, strict=True)):
         own = [beat for beat in cycle.phases if beat[-1].end > span[0] and beat[0].start < span[1]]
         left = c * (LEFT + wide + RIGHT) + LEFT
-        axes = [panel(made, left, top, wide, TALL) for top in tops]
+        axes = [style.panel(made, left, top, wide, TALL) for top in tops]
         _column(axes, run, span, (one, own), layout, first=c == 0)
     _same_limits(made.axes, rows)
     return made
@@ -165,9 +139,9 @@ def plot_forces(run: Trajectory, window: Sequence[float] | None = None, width: f
 
 def _key_beside(words: str, names: Sequence[str], room: float) -> tuple[int, int]:
     """(how many names of bearings stand beside each other in `room` mm, lines above the title; 0 where all fit beside it)."""
-    letter = LETTER * SMALL * POINT
-    widths = [BEFORE_NAME * SMALL * POINT + letter * len(name) for name in names]
-    if not names or sum(widths) + LETTER * LABEL * POINT * len(words) <= room:
+    letter = style.LETTER * style.SMALL * style.POINT
+    widths = [BEFORE_NAME * style.SMALL * style.POINT + letter * len(name) for name in names]
+    if not names or sum(widths) + style.LETTER * style.LABEL * style.POINT * len(words) <= room:
         return len(names), 0
     columns = max(1, int(room / max(widths)))
     return columns, -(-len(names) // columns)
@@ -180,7 +154,7 @@ def left_out(scene: Scene) -> str:
     return f", without {' and '.join(unknown)}" if unknown else ""
 
 
-def _spans(run: Trajectory, cycle: Shown) -> list[Window]:
+def _spans(run: Trajectory, cycle: style.Shown) -> list[Window]:
     """The beats of a cycle where they are whole, without their free oscillation; or the cycle."""
     found = []
     for beat in (beat for beat in cycle.phases if beat[0].name in BEGINNING):
@@ -191,12 +165,7 @@ def _spans(run: Trajectory, cycle: Shown) -> list[Window]:
 
 
 def _column(
-    axes: list[Axes],
-    run: Trajectory,
-    span: Window,
-    shown: tuple[Curves, list[list[Phase]]],
-    layout: Layout,
-    first: bool,
+    axes: list[Axes], run: Trajectory, span: Window, shown: tuple[Curves, list[list[Phase]]], layout: Layout, first: bool
 ) -> None:
     one, phases = shown
     wide = layout.wide
@@ -204,33 +173,33 @@ def _column(
     x = (one.t - told.base) * told.factor
     nothing = np.zeros(len(x))
     groups: list[tuple[str, list[tuple[str, Array, str, Any]]]] = [
-        (name, [("normal", one.normal.get(name, nothing), SERIES[0], "-"),
-                ("friction", one.tangential.get(name, nothing), SERIES[1], DASHES[1])])
+        (name, [("normal", one.normal.get(name, nothing), style.SERIES[0], "-"),
+                ("friction", one.tangential.get(name, nothing), style.SERIES[1], DASHES[1])])
         for name in layout.pairs
     ]  # fmt: skip
     if layout.pivots:
         loads = [(n, one.pivots[n], worn[n].line, DASHES[k % len(DASHES)]) for k, n in enumerate(layout.pivots)]
         groups.append((BEARINGS, loads))
     for panel_axes, (name, lines) in zip(axes, groups, strict=True):
-        dress(panel_axes)
+        style.dress(panel_axes)
         factor, unit = layout.units[name]
         handles = []
         for label, values, colour, dashes in lines:
             gid = f"force {name} {label}"
             handles += panel_axes.plot(
-                *reduced(x, factor * values), linestyle=dashes, color=colour, linewidth=CURVE, gid=gid, zorder=3
+                *reduced(x, factor * values), linestyle=dashes, color=colour, linewidth=style.CURVE, gid=gid, zorder=3
             )
         drawn = np.concatenate([factor * values for _, values, _, _ in lines])
-        limits(panel_axes, float(drawn.min()), float(drawn.max()), 0.05, FLAT, 1.0)
+        style.limits(panel_axes, float(drawn.min()), float(drawn.max()), 0.05, FLAT, 1.0)
         panel_axes.ticklabel_format(axis="y", useOffset=False)
         if first or wide:
-            title(panel_axes, name if name != BEARINGS else layout.bearings)
+            style.title(panel_axes, name if name != BEARINGS else layout.bearings)
         if first:
             panel_axes.set_ylabel(f"force ({unit})", labelpad=1.5)
         low, columns = (OVER / TALL * layout.raised, layout.columns) if name == BEARINGS else (0.0, len(lines))
         where: dict[str, Any] = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0 + low), "borderaxespad": 0.0}
         if wide or not first:  # side by side in a column of text: names on the left, keys on the right
-            key(panel_axes, [(h, line[0]) for h, line in zip(handles, lines, strict=True)], ncols=columns, **where)
+            style.key(panel_axes, [(h, line[0]) for h, line in zip(handles, lines, strict=True)], ncols=columns, **where)
         panel_axes.set_xlim(*((end - told.base) * told.factor for end in span))
         for beat in phases:
             shade(panel_axes, beat, told.base, told.factor)
@@ -257,12 +226,10 @@ def scale(values: object) -> tuple[float, str]:
 
 def _same_limits(axes: Sequence[Axes], rows: int) -> None:
     """Panels side by side show the same range."""
-    from matplotlib.ticker import MaxNLocator
-
     for k in range(rows):
         row = axes[k::rows]
         low, high = min(one.get_ylim()[0] for one in row), max(one.get_ylim()[1] for one in row)
         for one in row:
             one.set_ylim(low, high)
-            one.yaxis.set_major_locator(MaxNLocator(nbins=4, steps=[1, 2, 5, 10]))
-            one.xaxis.set_major_locator(MaxNLocator(nbins=5, steps=[1, 2, 5, 10]))
+            style.ticks(one.yaxis, 4)
+            style.ticks(one.xaxis, 5)

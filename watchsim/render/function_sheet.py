@@ -12,10 +12,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from textwrap import wrap
-from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
 
 from watchsim.escapement.by_hand import Hands
 from watchsim.escapement.fork_and_pin import Passage
@@ -27,14 +28,8 @@ from watchsim.mechanism.compile import Compiled
 from watchsim.render.palette import INK
 from watchsim.render.parts import Posed
 from watchsim.scene.scene import Scene
+from watchsim.simulation.trajectory import Array
 from watchsim.storage.write import write_file
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-
-# How is an angle drawn: two rays, an arc with arrowheads, its name and its value?
 
 THIN, SIZE = 0.6, 7.0  # pt
 HEAD = "-|>,head_width=0.12,head_length=0.3"
@@ -78,11 +73,8 @@ def pointed(axes: Axes, place: Point, words: str, aside: tuple[float, float], co
     )  # fmt: skip
 
 
-# Which pictures show lock and draw of a stone, a drop, and the lift of the balance?
-#
 # Each view is drawn in millimetres in the movement, as the scene places it.
 
-Array = NDArray[np.float64]
 
 LEVER_INK, WHEEL_INK, DRAW_INK = "#1f4e9c", "#8a5a00", "#b0183c"
 STONES = ("entry", "exit")
@@ -296,8 +288,6 @@ def whole(axes: Axes, views: Views, aspect: float) -> None:
 
 def shape(views: Views) -> float:
     """Width over height of all parts."""
-    from matplotlib.figure import Figure
-
     axes = Figure().add_subplot()
     whole(axes, views, 1.0)
     (left, right), (low, high) = _extent(axes)
@@ -313,8 +303,6 @@ def _extent(axes: Axes) -> tuple[tuple[float, float], tuple[float, float]]:
 def degrees(value: float) -> str:
     return f"{math.degrees(value):.2f}°"
 
-
-# Which picture shows an impulse that a stone of its own takes: where the wheel meets it, where it lets it go?
 
 AROUND = 1.15  # times the way of the tooth: half the picture
 ASIDE = 24.0  # pt, words from their arc
@@ -370,8 +358,6 @@ def _turn(axes: Axes, pivot: Point, ends: tuple[Point, Point], toward: Point, wo
     pointed(axes, place, words, (ASIDE * (toward[0] - place[0]) / away, ASIDE * (toward[1] - place[1]) / away), colour)
 
 
-# What does the sheet look like that shows the geometry of function of an escapement, with its angles and their values?
-
 MM = 1.0 / 25.4  # inches
 FULL, COLUMN = 170.0, 85.0
 MARGIN, GAP, TITLE, HEAD_FUNCTION_SHEET = 3.0, 4.0, 11.0, 3.5  # mm
@@ -383,9 +369,6 @@ SENTENCE = 56  # characters
 
 def function_sheet(scene: Scene, compiled: Compiled, function: Function, width: float = FULL) -> Figure:
     """The sheet as a figure, `width` mm wide. ValueError where nothing of it was measured."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
     if function.pallets is None:
         raise ValueError("no sheet of the geometry of function: " + "; ".join(why for _, why in function.missing))
     views = Views(Posed(scene, compiled), function, Hands(compiled))

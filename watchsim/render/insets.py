@@ -18,7 +18,6 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.path import Path
 from matplotlib.transforms import Affine2D, Bbox, IdentityTransform
-from numpy.typing import NDArray
 
 from watchsim.analysis.phases import Phase
 from watchsim.geometry.loops import Loop
@@ -26,14 +25,12 @@ from watchsim.render.marks import STONES, PalletStones, clock
 from watchsim.render.palette import Style, looks
 from watchsim.render.parts import LastingPatch, Part, loops_of, outline, parts, pose_matrix
 from watchsim.render.patches import CoilPatches
-from watchsim.render.view import COARSE, Frame, View, Window, choose, dense, placed, swept
+from watchsim.render.view import COARSE, Frame, Pixels, View, Window, choose, dense, fitted, placed, swept
 from watchsim.render.words import Words
 from watchsim.scene.roles import roles
 from watchsim.scene.scene import Body, Scene
-from watchsim.simulation.trajectory import Trajectory
+from watchsim.simulation.trajectory import Array, Trajectory
 
-# Which places does a picture show once more, enlarged?
-#
 # A place is given as a body ("lever"), one of its layers ("lever.STONES"), one outline of a layer ("lever.STONES.2", counted in
 # the order of the drawing), the "entry stone" or "exit stone" of an escapement, or a rectangle of the movement in millimetres
 # ("-1.4, 1.9 : -0.8, 2.5"). What stays about where it is is shown in place; what goes far is followed.
@@ -80,12 +77,7 @@ def beside(frame: Frame, count: int) -> tuple[Frame, tuple[Frame, ...]]:
     columns = max(range(1, count + 1), key=lambda n: (min((across - gap) / n, (down - gap) / -(-count // n)), -n))
     width, height = (across - gap) / columns, (down - gap) / -(-count // columns)
     boxes = tuple(
-        Frame(
-            left + gap + k % columns * width,
-            top - gap - (k // columns + 1) * height + gap,
-            width - gap,
-            height - gap,
-        )
+        Frame(left + gap + k % columns * width, top - gap - (k // columns + 1) * height + gap, width - gap, height - gap)
         for k in range(count)
     )
     if wide:
@@ -100,8 +92,8 @@ def insets(run: Trajectory, window: Window, places: Sequence[str], boxes: Sequen
 
 
 def _inset(run: Trajectory, window: Window, place: str, box: Frame, turn: float, stones: PalletStones) -> Inset:
-    if (corners := _rectangle_insets(place)) is not None:
-        return Inset(place.strip(), box, _fitted(corners, box, turn))
+    if (corners := _rectangle_of(place)) is not None:
+        return Inset(place.strip(), box, fitted(corners, box, turn, AIR))
     body, loops = _outlines(run, place, stones)
     points = outline(loops, math.inf)
     points = outline(loops, COARSE * max(float(np.ptp(points, axis=0).max()), 1e-12))
@@ -109,13 +101,13 @@ def _inset(run: Trajectory, window: Window, place: str, box: Frame, turn: float,
     room = placed(points, frames).reshape(-1, 2)
     low, high = points.min(axis=0), points.max(axis=0)
     if float(np.ptp(room, axis=0).max()) <= STAYS * float((high - low).max()):
-        return Inset(place, box, _fitted(room, box, turn))
+        return Inset(place, box, fitted(room, box, turn, AIR))
     middle, half = 0.5 * (low + high), FOLLOWED * float(np.hypot(*(high - low)))
     around = placed(middle[None], frames[:1])[0] + np.array([(-half, -half), (half, half)])
-    return Inset(place, box, _fitted(around, box, turn), body.name, (float(middle[0]), float(middle[1])))
+    return Inset(place, box, fitted(around, box, turn, AIR), body.name, (float(middle[0]), float(middle[1])))
 
 
-def _rectangle_insets(place: str) -> Array | None:
+def _rectangle_of(place: str) -> Array | None:
     """(4, 2) corners (m) of a place such as "-1.4, 1.9 : -0.8, 2.5"; None where it names something."""
     if ":" not in place:
         return None
@@ -155,23 +147,8 @@ def _outlines(run: Trajectory, place: str, stones: PalletStones) -> tuple[Body, 
     return body, [own[int(number) - 1]]
 
 
-def _fitted(points: Array, box: Frame, turn: float) -> View:
-    """The view that fits points (n, 2) into a box."""
-    c, s = math.cos(turn), math.sin(turn)
-    seen = points @ np.array([[c, s], [-s, c]])
-    low, high = seen.min(axis=0), seen.max(axis=0)
-    width, height = np.maximum(high - low, 1e-12)
-    scale = (1.0 - 2.0 * AIR) * min(box.width / width, box.height / height)
-    x, y = 0.5 * (low + high)
-    return View((c * x + s * y, -s * x + c * y), scale, turn, (box.left + 0.5 * box.width, box.bottom + 0.5 * box.height))
-
-
-# How are insets drawn over a picture?
-#
 # Every inset has shapes of its own, fine enough for its scale; those out of its sight at an instant are passed over.
 
-Array = NDArray[np.float64]
-Pixels = NDArray[np.uint8]
 Marks = Callable[[Array], list[LastingPatch]]  # what is drawn at contacts, for a map from metres to pixels
 
 CHORD = 0.05  # pixels that a chord may stray from its arc
@@ -205,11 +182,11 @@ class InsetPicture:
         look = {"fill": False, "edgecolor": style.faint, "linewidth": max(1.4 * unit, 1.0)}
         self._border = self._own(LastingPatch(frame, transform=IdentityTransform(), **look), False)
 
-    def place_in(self, matrix: Array, centre: tuple[float, float], room: Frame) -> LastingPatch:
+    def place_in(self, matrix: Array, frames: dict[str, Array], room: Frame) -> LastingPatch:
         """The rectangle of the picture (its map `matrix`) that the inset enlarges."""
         half = 0.5 * np.array([self._inset.box.width, self._inset.box.height]) / self._inset.view.scale
         scale = float(np.hypot(*matrix[:2, 0]))
-        middle = matrix[:2, :2] @ np.array(centre) + matrix[:2, 2]
+        middle = matrix[:2, :2] @ np.array(self._inset.centre(frames)) + matrix[:2, 2]
         corners = _rectangle(Path(np.array([middle - scale * half, middle + scale * half])))
         look = {"fill": False, "edgecolor": self._style.ink, "linewidth": 0.8 * self._thin, "alpha": 0.55}
         patch = LastingPatch(corners, transform=IdentityTransform(), **look)
@@ -238,10 +215,7 @@ class InsetPicture:
         box = self._inset.box
         for shape in self._shapes:
             x, y = self._transforms[shape.body].transform(shape.middle)
-            reach = shape.reach * self._inset.view.scale
-            beside = abs(x - box.left - 0.5 * box.width) - 0.5 * box.width
-            above = abs(y - box.bottom - 0.5 * box.height) - 0.5 * box.height
-            if max(beside, above) <= reach:
+            if box.near(x, y, shape.reach * self._inset.view.scale):
                 yield shape
 
     def _shape(self, part: Part) -> _Shape:
@@ -273,8 +247,6 @@ def _rectangle(diagonal: Path) -> Path:
     codes = [Path.MOVETO, Path.LINETO, Path.LINETO, Path.LINETO, Path.CLOSEPOLY]
     return Path([(x0, y0), (x1, y0), (x1, y1), (x0, y1), (x0, y0)], codes)
 
-
-# How does a strip below the mechanism show a body's angle and velocity, with a cursor at the instant shown?
 
 DPI = 72.0  # one point is one pixel
 SWINGS = 8.0  # on a page

@@ -1,4 +1,7 @@
-"""What does a scene look like in three dimensions?"""
+"""What does a scene look like in three dimensions, and at which instants must a player know where its bodies are?
+
+A player draws straight lines between keys, so keys stand as close as the motion asks for.
+"""
 
 from __future__ import annotations
 
@@ -10,15 +13,13 @@ import numpy as np
 from watchsim.geometry.meshes import MOST_TURN, Piece, Placed, Track, laid, plate, revolved, turned_about, united
 from watchsim.geometry.primitives import TURN as TURN_of_primitives
 from watchsim.render.palette import BLUED, BRASS, GILT, PLATE, RUBY, STEEL, Finish, finish, looks
-from watchsim.render.rows import kept_rows
+from watchsim.render.rows import kept_rows, off_line
 from watchsim.render.view import Window, poses, stretch
 from watchsim.scene.layer_heights import Slab
 from watchsim.scene.scene import Body, Scene
 from watchsim.scene.solids import HAIRSPRING, LYING, UPRIGHT
 from watchsim.scene.trains import at_start, is_still
 from watchsim.simulation.trajectory import Array, Trajectory
-
-# At which instants must a player in three dimensions know the places of bodies, if it draws straight lines between them?
 
 EVENLY = 2000  # instants besides the rows of the run
 TURN = math.radians(0.02)  # what an angle may be off between keys
@@ -59,15 +60,12 @@ def _track(name: str, t: Array, frames: Array) -> Track:
     def fits(i: int, j: int) -> bool:
         if abs(frames[j, 2] - frames[i, 2]) > MOST_TURN:
             return False
-        s = ((t[i + 1 : j] - t[i]) / (t[j] - t[i]))[:, None]
-        off = np.abs(frames[i] + s * (frames[j] - frames[i]) - frames[i + 1 : j])
+        off = off_line(t, frames, i, j)
         return bool(np.all(off[:, 2] <= TURN) and np.all(off[:, :2] <= SHARE * travel))
 
     kept = kept_rows(len(t), fits)
     return Track(name, t[kept], frames[kept, :2], frames[kept, 2])
 
-
-# What does a scene look like in three dimensions?
 
 METAL, STONE = 0.55, 0.05  # how metallic the parts look
 METALS = ((12e3, GILT), (8.0e3, BRASS), (5e3, STEEL), (3e3, RUBY))  # kg/m³ from which on: gold, copper alloys, steel, stones

@@ -9,28 +9,25 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any
+from typing import IO, Any
 
 import numpy as np
-from numpy.typing import NDArray
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Polygon
+from matplotlib.ticker import ScalarFormatter, StrMethodFormatter
 
 from watchsim.analysis.phases import Phase
+from watchsim.render import style
 from watchsim.render.marks import clock
 from watchsim.render.palette import looks
 from watchsim.render.phase_bands import name_key, shade
 from watchsim.render.rows import COLUMNS, bands, reduced
-from watchsim.render.style import CURVE, FULL, NARROW, dress, figure, heading, key, limits, passing, place_panels, title
 from watchsim.render.view import choose, dense, stretch
 from watchsim.scene.scene import Body
-from watchsim.simulation.trajectory import Trajectory
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-    from matplotlib.lines import Line2D
-
-
-Array = NDArray[np.float64]
+from watchsim.simulation.trajectory import Array, Trajectory
 
 QUANTITIES = ("angle", "velocity", "acceleration")
 USUAL = QUANTITIES[:2]
@@ -70,7 +67,7 @@ def plot_kinematics(
     bodies: Sequence[str] | None = None,
     quantities: Sequence[str] = USUAL,
     window: Sequence[float] | None = None,
-    width: float = FULL,
+    width: float = style.FULL,
 ) -> Figure:
     """One panel per moving body and quantity over a common time axis; a figure to save as PNG, SVG or PDF.
 
@@ -91,21 +88,17 @@ class Kinematics:
     """The panels of `plot_kinematics`, which can show one window after another: most of a plot's cost is making them."""
 
     def __init__(
-        self,
-        run: Trajectory,
-        bodies: Sequence[str] | None = None,
-        quantities: Sequence[str] = USUAL,
-        width: float = FULL,
+        self, run: Trajectory, bodies: Sequence[str] | None = None, quantities: Sequence[str] = USUAL, width: float = style.FULL
     ) -> None:
         self.run, self._quantities = run, _quantities(quantities)
         self._channels = [channel for body in choose(run, bodies) for channel in channels(run, body)]
         if not self._channels:
             raise ValueError("nothing to plot: no body of this run moves")
-        side_by_side = 1 if width < NARROW else len(self._quantities)
+        side_by_side = 1 if width < style.NARROW else len(self._quantities)
         rows = len(self._channels) * len(self._quantities) // side_by_side
-        self.figure: Figure = figure(width, (PANEL if rows <= MANY else LOW) * rows + FOOT + KEY)
+        self.figure: Figure = style.figure(width, (PANEL if rows <= MANY else LOW) * rows + FOOT + KEY)
         self._panels = self.figure.subplots(rows, side_by_side, sharex=True, squeeze=False)
-        heading(self.figure, run.scene.title)
+        style.heading(self.figure, run.scene.title)
         self._own = len(self.figure.texts), len(self.figure.artists)
         worn = looks(run.scene)
         for axes, channel, quantity in self._each():
@@ -122,7 +115,7 @@ class Kinematics:
         t, *motion = dense(self.run, span, accelerations=QUANTITIES[2] in self._quantities)
         told = clock(span)
         x = (t - told.base) * told.factor
-        phases = passing(self.run, span)
+        phases = style.passing(self.run, span)
         columns = DOT_COLUMNS * round(self._panels[0, 0].bbox.width) if dots else COLUMNS
         for axes, channel, quantity in self._each():
             values = channel.factor * motion[QUANTITIES.index(quantity)][:, channel.columns]
@@ -136,7 +129,7 @@ class Kinematics:
         for axes in self._panels[-1]:
             axes.set_xlabel(told.label)
         self._panels[-1, 0].set_xlim(*((end - told.base) * told.factor for end in span))  # which all panels share
-        place_panels(self.figure, self._panels, self._named(phases))
+        style.place_panels(self.figure, self._panels, self._named(phases))
         return self.figure
 
     def _named(self, phases: list[list[Phase]]) -> float:
@@ -156,7 +149,6 @@ class Kinematics:
 
 def write_png(figure: Figure, path: Path | IO[bytes]) -> None:
     """As `figure.savefig(path)`, but without transparency and lightly packed: a tenth more bytes in half the time."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
     from PIL import Image
 
     canvas = FigureCanvasAgg(figure)
@@ -186,22 +178,20 @@ def channels(run: Trajectory, body: Body) -> list[Channel]:
 
 
 def _panel(axes: Axes, channel: Channel, quantity: str, colour: str) -> None:
-    dress(axes)
+    style.dress(axes)
     axes.set_ylabel(f"{channel.names[quantity]} ({channel.units[quantity]})")
-    title(axes, channel.body.name, colour)
+    style.title(axes, channel.body.name, colour)
     axes.yaxis.set_offset_position("right")  # opposite the title
     lines = []
     for k in range(len(channel.columns)):
         name = f"{channel.body.name} {quantity}{f' {channel.legend[k]}' if channel.legend else ''}"
-        lines += axes.plot([], [], STYLES[k], color=colour, linewidth=CURVE, solid_joinstyle="round", gid=name, zorder=3)
+        lines += axes.plot([], [], STYLES[k], color=colour, linewidth=style.CURVE, solid_joinstyle="round", gid=name, zorder=3)
     if channel.legend:
-        key(axes, list(zip(lines, channel.legend, strict=True)), loc="upper left", ncols=len(channel.legend))
+        style.key(axes, list(zip(lines, channel.legend, strict=True)), loc="upper left", ncols=len(channel.legend))
 
 
 def _curve(axes: Axes, line: Line2D, x: Array, y: Array, columns: int) -> None:
     """Draw y over x: as a line, or where its points are dense as the area that it covers; dashed ones stay lines."""
-    from matplotlib.patches import Polygon
-
     areas = bands(x, y, columns) if line.get_linestyle() == STYLES[0] else []
     line.set_data(*(((), ()) if areas else reduced(x, y, columns)))
     for middle, low, high in areas:
@@ -212,14 +202,12 @@ def _curve(axes: Axes, line: Line2D, x: Array, y: Array, columns: int) -> None:
 
 def _limits(axes: Axes, values: Array, angle: bool) -> None:
     """Room above and below; rounding noise of a resting body is not blown up; large angles in parts of a turn."""
-    from matplotlib.ticker import MaxNLocator, ScalarFormatter, StrMethodFormatter
-
     low, high = float(np.nanmin(values)), float(np.nanmax(values))
-    limits(axes, low, high, flat=FLAT, unit=1.0)
+    style.limits(axes, low, high, flat=FLAT, unit=1.0)
     if angle and high - low > 60.0:
-        axes.yaxis.set_major_locator(MaxNLocator(nbins=9, steps=[1, 1.5, 1.8, 3, 3.6, 4.5, 6, 9, 10]))
+        style.ticks(axes.yaxis, 9, [1, 1.5, 1.8, 3, 3.6, 4.5, 6, 9, 10])
     else:
-        axes.yaxis.set_major_locator(MaxNLocator(nbins=5, steps=[1, 2, 5, 10]))
+        style.ticks(axes.yaxis, 5)
     if high - low > 10.0:
         axes.yaxis.set_major_formatter(StrMethodFormatter("{x:,.0f}"))
     else:

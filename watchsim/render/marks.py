@@ -1,4 +1,4 @@
-"""What do the numbers in a picture say: time, speed, angles, scale?"""
+"""What is marked in a picture: contacts, forces, stones; and what do its numbers say: time, speed, angles, scale?"""
 
 from __future__ import annotations
 
@@ -23,15 +23,12 @@ from watchsim.render.parts import loops_of, outline
 from watchsim.render.view import Window
 from watchsim.scene.scene import Body, Scene
 from watchsim.simulation.state import EventKind
-from watchsim.simulation.trajectory import Trajectory, frames
+from watchsim.simulation.trajectory import Array, Trajectory, frames
 from watchsim.storage.columns import blocks
 
-# With which arrows does a picture show how hard bodies press on one another?
-#
 # An arrow begins where two bodies touch and tells the force on that one of them which comes later in the scene and can move:
 # on the lever from the wheel, on the balance from the lever. All arrows of a movie have one scale.
 
-Array = NDArray[np.float64]
 
 HEAD, WIDE, SHAFT = 0.28, 0.1, 0.034  # of the longest arrow: length of a head, half widths of head and shaft
 AT_ONCE = 2000  # instants
@@ -104,8 +101,6 @@ def _arrow(start: Array, way: Array, length: float, longest: float) -> Path:
     return Path([start + x * along + y * across for x, y in outline], codes)
 
 
-# Where do bodies touch at this instant?
-#
 # A contact is closed from the event that closed it to the one that opened it; its point lies on the circle it was compiled
 # to, in the direction of the other side.
 
@@ -208,11 +203,8 @@ def _world(frame: Sequence[float] | Array, x: float, y: float) -> Point:
     return frame[0] + c * x - s * y, frame[1] + s * x + c * y
 
 
-# Which outlines of the lever are the entry and the exit stone?
-#
-# As the geometry of function has it: the stone that a tooth meets first on its way is the entry stone, whatever layers are
-# called
-# and in whatever order they were drawn.
+# The stone that a tooth meets first on its way is the entry stone, whatever layers are called and in whatever order they were
+# drawn.
 
 STONES = ("entry stone", "exit stone")
 FINE = 1e-6  # of the scene's size: how closely an outline is followed to find which one a tooth rests on
@@ -253,8 +245,6 @@ def _distance(loop: Loop, point: np.ndarray, deviation: float) -> float:
     share = np.clip(np.sum((point - first) * way, axis=1) / np.maximum(np.sum(way * way, axis=1), 1e-300), 0.0, 1.0)
     return float(np.hypot(*(first + share[:, None] * way - point).T).min())
 
-
-# What do the numbers in a picture say: time, speed, angles, scale?
 
 ROUND = 1  # decimals of a window's length to which the time before it is given
 SHORT = 1.0  # s; a shorter window is given in milliseconds from its start

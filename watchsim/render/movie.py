@@ -1,4 +1,11 @@
-"""How does a mechanism turned by hand become a short movie?"""
+"""How does a run, or a mechanism turned by hand, become a movie?
+
+movie(run, "beat.mp4", window=(19.4, 19.75), speed=1 / 20)
+
+At an even speed, or adaptive: the stretches in which things happen get most of the film, the others are hurried through, and
+between the two the speed changes smoothly. Each blow sounds when its instant is on the screen; it keeps its pitch and dies away
+as it does in the watch. Any frame can also be drawn alone with `frame`.
+"""
 
 from __future__ import annotations
 
@@ -33,13 +40,10 @@ from watchsim.render.insets import strip_body
 from watchsim.render.marks import Clock, ContactMarks, ForceArrows
 from watchsim.render.palette import DARK, LIGHT
 from watchsim.render.stage import Extras, Stage
-from watchsim.render.view import Window, poses, stretch
+from watchsim.render.view import Pixels, Window, poses, stretch
 from watchsim.simulation.state import EVENT_DTYPE, EventKind, Stop
-from watchsim.simulation.trajectory import Array as Array_of_trajectory
-from watchsim.simulation.trajectory import Trajectory, frames
+from watchsim.simulation.trajectory import Array, Trajectory, frames
 from watchsim.storage.columns import rows_where
-
-# In which stretches of a run do things happen, so that they are worth showing slowly?
 
 TOLD = (EventKind.IMPACT, EventKind.CLOSE, EventKind.OPEN, EventKind.JAM, EventKind.ACCUMULATION)  # slow where these happen
 AROUND = 0.004  # of the window: what is slow around an event where no phases are known
@@ -67,7 +71,7 @@ def _lively(found: list[Phase], window: Window) -> list[Phase]:
     return [one for one in found if one.name not in LASTING and one.end > window[0] and one.start < window[1]]
 
 
-def _merged(spans: Array_of_trajectory, gap: float, window: Window) -> Iterator[Window]:
+def _merged(spans: Array, gap: float, window: Window) -> Iterator[Window]:
     """The spans in order, united where no more than `gap` (s) lies between them, cut to the window."""
     last: list[float] | None = None
     for start, end in sorted(map(tuple, spans.tolist())):
@@ -80,13 +84,6 @@ def _merged(spans: Array_of_trajectory, gap: float, window: Window) -> Iterator[
     if last is not None:
         yield max(last[0], window[0]), min(last[1], window[1])
 
-
-# Which instants of a run become frames, and how fast does the film go at each?
-#
-# At an even speed, or adaptive: the stretches in which things happen get most of the film, the others are hurried through, and
-# between the two the speed changes smoothly.
-
-Array = NDArray[np.float64]
 
 MOST_FRAMES = 1e6
 BUSY_SHARE = 0.8  # of the film, for the stretches in which things happen
@@ -182,11 +179,6 @@ def _instants(shown: Array, film: Array, t: Array, log_speed: Array) -> Array:
     return t[piece] + np.where(steep, bent, rest)
 
 
-# Which pictures make up a film? Any of them can be drawn alone.
-
-Integers = NDArray[np.int64]
-Pixels = NDArray[np.uint8]
-
 AT_ONCE = 1000  # instants whose poses are asked for together: memory does not grow with the film
 
 
@@ -201,7 +193,7 @@ class Film:
     arrows: ForceArrows | None
     tells_speed: bool
 
-    def pictures(self, numbers: Integers, progress: Callable[[int, int], None] | None = None) -> Iterator[Pixels]:
+    def pictures(self, numbers: NDArray[np.int64], progress: Callable[[int, int], None] | None = None) -> Iterator[Pixels]:
         """Frames of these numbers, one after the other, each in the same memory."""
         for start in range(0, len(numbers), AT_ONCE):
             part = numbers[start : start + AT_ONCE]
@@ -222,13 +214,6 @@ class Film:
         )
 
 
-# When in a film does each blow of a run sound?
-#
-# At the moment its instant is on the screen, whatever the speed: in slow motion blows are heard further apart, at adaptive
-# speed
-# as the pictures go. A blow itself is not stretched; it keeps its pitch and dies away as it does in the watch.
-
-
 def soundtrack(run: Trajectory, plan: Plan) -> Score:
     """The blows within a plan, in seconds of the film. ValueError where there are none."""
     times, energies = noises(run)
@@ -243,12 +228,6 @@ def write_soundtrack(place: Path, heard: Score) -> None:
     """Write it as WAV, as long as the film."""
     write_score(place, heard, heard.known)
 
-
-# How does a run become a movie?
-#
-#     movie(run, "beat.mp4", window=(19.4, 19.75), speed=1 / 20)
-#
-# Any frame can also be drawn alone with `frame`.
 
 ADAPTIVE = "adaptive"  # a speed
 
@@ -397,8 +376,6 @@ def _extras(run: Trajectory, insets: Sequence[str], strip: str | bool, phases: b
     force, scale = (arrows.largest, arrows.round_force) if arrows else (0.0, 0.0)
     return Extras(places, body, tuple(named_phases(run)) if phases else (), force, scale)
 
-
-# How does a mechanism turned by hand become a short movie?
 
 FPS = 30.0
 LEAP = math.radians(0.6)  # of a pressed body per frame

@@ -1,4 +1,4 @@
-"""Which colours does a part wear?
+"""Which colours do parts wear, and in which is a picture drawn besides, on light or on dark ground?
 
 Watchmaking has its own: brass wheels, grey steel levers, ruby stones. The words of layers and bodies tell which. Parts that
 never move have a colour of their own, whatever they are called.
@@ -9,21 +9,16 @@ from __future__ import annotations
 import colorsys
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from matplotlib.collections import Collection
 from matplotlib.colors import to_rgba
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.text import Text
 
 from watchsim.scene.scene import Body, Scene
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-
-# Which colours does a part wear?
 
 BACKGROUND = "#f6f3ed"
 INK = "#23272c"
@@ -77,11 +72,7 @@ OTHERS = (STEEL, BRASS, COPPER, BLUED, PATINA, ENAMEL, OLIVE)
 
 _STONES = ("stone", "pallet", "jewel", "ruby")
 _FORKS = ("lever", "fork", "anchor", "arm")
-_BODIES = (
-    (("balance", "roller"), BLUED),
-    (("lever", "fork", "anchor", "pallet"), STEEL),
-    (("wheel", "gear", "pinion"), BRASS),
-)
+_BODIES = ((("balance", "roller"), BLUED), (("lever", "fork", "anchor", "pallet"), STEEL), (("wheel", "gear", "pinion"), BRASS))
 _LAYERS = (
     (("roller", "balance"), BLUED),
     (("tooth", "teeth", "wheel", "rim"), BRASS),
@@ -154,8 +145,6 @@ def _match(text: str, table: tuple[tuple[tuple[str, ...], Finish], ...]) -> Fini
     return next((found for words, found in table if any(word in text for word in words)), None)
 
 
-# In which colours is a picture drawn besides its parts: on light or on dark ground?
-
 PALE_PICTURE_STYLE = 0.55  # of the ground's colour in what is drawn though it cannot touch
 
 
@@ -213,10 +202,9 @@ DARK = Style(
 )
 
 
-# How does a figure that was drawn for paper look on dark ground?
-#
-# Ground, words, rules, marks and the bands of phases take the colours that movies have there; other curves and words keep their
-# hue and become light enough to be read, other pale faces dark enough to lie behind. Parts keep what they wear.
+# A figure drawn for paper, on dark ground: ground, words, rules, marks and the bands of phases take the colours that movies
+# have there; other curves and words keep their hue and become light enough to be read, other pale faces dark enough to lie
+# behind. Parts keep what they wear.
 
 READABLE = 4.5  # contrast of words and curves with the ground, as the guidelines for pages ask (WCAG 2.1, 1.4.3)
 PALE, BEHIND = 0.82, 0.24  # lightness from which a face is one that lies behind, and what it becomes

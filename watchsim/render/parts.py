@@ -9,13 +9,16 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.backend_bases import GraphicsContextBase, RendererBase
 from matplotlib.colors import to_rgba
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path
+from matplotlib.transforms import Affine2D
 from numpy.typing import NDArray
 
 from watchsim.contact.cell_frames import chords
@@ -26,15 +29,7 @@ from watchsim.mechanism.compile import Compiled
 from watchsim.model import Model
 from watchsim.render.palette import LIGHT, Finish, finish, looks
 from watchsim.scene.scene import Body, Scene
-from watchsim.simulation.trajectory import frames
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-
-# How does a body's frame lie in the plane?
-
-Array = NDArray[np.float64]
+from watchsim.simulation.trajectory import Array, frames
 
 
 def pose_matrix(frame: Array) -> Array:
@@ -44,8 +39,6 @@ def pose_matrix(frame: Array) -> Array:
     return np.array([[c, -s, x], [s, c, y], [0.0, 0.0, 1.0]])
 
 
-# How is a shape drawn hundreds of times whose look never changes?
-#
 # A patch of matplotlib works its look out anew whenever it is drawn, which for small shapes costs more than the shape itself.
 
 
@@ -75,8 +68,6 @@ class LastingPatch(PathPatch):
         return context, face if face[3] else None
 
 
-# How are some edges of a scene picked out in colour?
-
 SMOOTH = 2000  # chords of one arc, at most: a circle larger than any picture still looks round
 
 
@@ -101,14 +92,10 @@ def edge_paths(edges: Edges, deviation: float) -> dict[int, Path]:
 
 def _path(edges: Edges, rows: NDArray[np.int64], deviation: float) -> Path:
     drawn = chords(edges.model.primitives[rows], deviation, SMOOTH)
-    lines = [drawn.points[first:last] for first, last in zip(drawn.first[:-1], drawn.first[1:], strict=True)]
+    lines = [drawn.points[first:last] for first, last in pairwise(drawn.first)]
     lines = [line if len(line) > 1 else np.stack([line[0], line[0] + np.array([deviation, 0.0])]) for line in lines]
-    codes = np.full(sum(map(len, lines)), Path.LINETO, Path.code_type)
-    codes[np.cumsum([0, *map(len, lines[:-1])])] = Path.MOVETO
-    return Path(np.concatenate(lines), codes)
+    return compound(lines, closed=False)
 
-
-# Which shapes are filled to draw a body?
 
 LARGER = 1.0 + 1e-6  # in area: an outline in the very place of a hole fills it and is not around it
 ALIKE = 6  # digits of two areas that are the same
@@ -215,9 +202,8 @@ def _inner_point(line: Array) -> Point:
 
 
 def _solids(body: Body, look: Finish, outer: list[tuple[Loop, Array]], owners: list[list[tuple[Loop, Array]]]) -> list[Part]:
-    layers = dict.fromkeys(loop.layer for loop, _ in outer)
     made = []
-    for layer in layers:
+    for layer in dict.fromkeys(loop.layer for loop, _ in outer):
         members = [i for i, (loop, _) in enumerate(outer) if loop.layer == layer]
         followed = [_oriented(*own, hole=k > 0) for i in members for k, own in enumerate(owners[i])]
         area = max(abs(signed_area(outer[i][1])) for i in members)
@@ -231,12 +217,12 @@ def _oriented(loop: Loop, line: Array, hole: bool) -> tuple[Loop, Array]:
     return (loop.reversed(), line[::-1]) if (signed_area(line) < 0.0) != hole else (loop, line)
 
 
-def compound(lines: Sequence[Array]) -> Path:
-    """One path of closed polylines."""
+def compound(lines: Sequence[Array], closed: bool = True) -> Path:
+    """One path of polylines, closed or open."""
     codes = []
     for line in lines:
         code = np.full(len(line), Path.LINETO, dtype=np.uint8)
-        code[0], code[-1] = Path.MOVETO, Path.CLOSEPOLY
+        code[0], code[-1] = Path.MOVETO, Path.CLOSEPOLY if closed else Path.LINETO
         codes.append(code)
     return Path(np.concatenate(lines), np.concatenate(codes))
 
@@ -244,10 +230,7 @@ def compound(lines: Sequence[Array]) -> Path:
 def _grounds(body: Body, look: Finish, chains: list[tuple[Loop, Array]], spacing: float) -> list[Part]:
     made = []
     for loop, line in chains:
-        codes = np.full(len(line), Path.LINETO, dtype=np.uint8)
-        codes[0] = Path.MOVETO
-        own = finish(body, loop.layer, look)
-        faces, strokes = Path(line, codes), hatching(line, spacing)
+        faces, strokes, own = compound([line], closed=False), hatching(line, spacing), finish(body, loop.layer, look)
         made.append(Part(body.name, faces, strokes, math.inf, own, ground=True, layer=loop.layer, outlines=(loop,)))
     return made
 
@@ -255,7 +238,7 @@ def _grounds(body: Body, look: Finish, chains: list[tuple[Loop, Array]], spacing
 def hatching(line: Array, spacing: float) -> Path:
     """Slanted strokes every `spacing` metres along a polyline, on its left, where the material is."""
     steps = np.diff(line, axis=0)
-    lengths = np.hypot(steps[:, 0], steps[:, 1])
+    lengths = np.hypot(*steps.T)
     along = np.concatenate(([0.0], np.cumsum(lengths)))
     marks = np.arange(0.5 * spacing, along[-1], spacing)
     piece = np.clip(np.searchsorted(along, marks, side="right") - 1, 0, len(lengths) - 1)
@@ -266,13 +249,18 @@ def hatching(line: Array, spacing: float) -> Path:
     return Path(strokes, np.tile([Path.MOVETO, Path.LINETO], len(marks)).astype(np.uint8))
 
 
+def spoke(body: Body, size: float) -> tuple[float, float]:
+    """From where to where along its x axis (m) a radius is drawn on a round body of that size, from its bore on."""
+    edges = (edge for loop in loops_of(body) if loop.hole for edge in loop.edges)
+    bore = max((edge.radius for edge in edges if isinstance(edge, Arc)), default=0.0)
+    return bore, bore + 0.9 * (0.5 * size - bore)
+
+
 def is_round(body: Body) -> bool:
     """True where turning the body cannot be seen: nothing but circles about its own origin."""
     edges = [edge for loop in loops_of(body) for edge in loop.edges]
     return bool(edges) and all(isinstance(edge, Arc) and math.hypot(edge.x, edge.y) <= 1e-9 * edge.radius for edge in edges)
 
-
-# How do the bodies of a scene look in a position that somebody has put them in?
 
 FINENESS = 2e-5  # of the scene's size: chords of arcs, in close-ups too
 EDGE = 0.4  # pt
@@ -288,8 +276,6 @@ class Posed:
     def draw(self, axes: Axes, q: Array, bodies: Iterable[str] | None = None) -> None:
         """All bodies, or some, filled; q are absolute coordinates (n,)."""
         for part, path in self._placed(q, bodies):
-            from matplotlib.patches import PathPatch
-
             look = LIGHT.worn(part.finish)
             axes.add_artist(  # the limits are set by who draws; working them out from all curves takes longer than drawing
                 PathPatch(path, fill=not part.ground, facecolor=look.fill, edgecolor=look.edge, linewidth=EDGE, zorder=2)
@@ -297,14 +283,10 @@ class Posed:
 
     def outline(self, axes: Axes, q: Array, bodies: Iterable[str], colour: str) -> None:
         """Where some bodies stood or will stand, as thin dashes."""
-        from matplotlib.patches import PathPatch
-
         for _, path in self._placed(q, bodies):
             axes.add_patch(PathPatch(path, fill=False, edgecolor=colour, linewidth=0.5, linestyle=(0, (4, 2)), zorder=3))
 
     def _placed(self, q: Array, bodies: Iterable[str] | None) -> Iterable[tuple[Part, Path]]:
-        from matplotlib.transforms import Affine2D
-
         wanted = None if bodies is None else set(bodies)
         places = frames(self.scene, self.compiled.slices, self.compiled.relative(q[None]))
         for part in self.parts:

@@ -15,9 +15,7 @@ from matplotlib.backend_bases import RendererBase
 from matplotlib.figure import Figure
 from matplotlib.path import Path
 from matplotlib.transforms import Affine2D, Bbox, IdentityTransform, Transform
-from numpy.typing import NDArray
 
-from watchsim.geometry.primitives import Arc
 from watchsim.render.palette import BLUED, FIXED, PALE_PICTURE_STYLE, Style, mixed
 from watchsim.render.parts import (
     Edges,
@@ -30,15 +28,13 @@ from watchsim.render.parts import (
     outline,
     parts,
     pose_matrix,
+    spoke,
 )
-from watchsim.render.view import Frame, Hairspring, View, Zigzag, hairsprings, placed, size_of, zigzags
+from watchsim.render.view import Frame, Hairspring, View, Zigzag, hairsprings, placed, seen, size_of, zigzags
 from watchsim.scene.forces import Spring
 from watchsim.scene.scene import Body, Scene
 from watchsim.scene.trains import at_start, is_still, rides
-
-# How is a hairspring drawn: the strip, its collet and its stud?
-
-Array = NDArray[np.float64]
+from watchsim.simulation.trajectory import Array
 
 THINNEST = 1.1  # pixels at 1280 × 720: a strip seen from far is narrower than a line can be
 DEVIATION = 0.25  # pixels that a chord may stray from the coil
@@ -69,27 +65,14 @@ class CoilPatches:
     def patches(self, frames: dict[str, Array], matrix: Array) -> Iterator[LastingPatch]:
         """To be drawn for the poses x, y, angle of one instant; `matrix` maps metres to pixels. The next call moves them."""
         for spring, chords, (strip, collet, stud) in self._drawn:
-            x, y = _seen(frames[spring.body][None, :2], matrix)[0].tolist()
-            if not self._in_sight(x, y, 1.1 * self._scale * spring.coil.outer):
+            x, y = seen(frames[spring.body][None, :2], matrix)[0].tolist()
+            if not self._room.near(x, y, 1.1 * self._scale * spring.coil.outer):
                 continue
-            strip.set_path(Path(_seen(spring.line(frames, chords), matrix)))
+            strip.set_path(Path(seen(spring.line(frames, chords), matrix)))
             collet.set_path(Path.circle((x, y), self._scale * spring.coil.inner))
-            stud.set_path(Path(_seen(spring.stud(frames), matrix)))
+            stud.set_path(Path(seen(spring.stud(frames), matrix)))
             yield from (strip, collet, stud)
 
-    def _in_sight(self, x: float, y: float, reach: float) -> bool:
-        room = self._room
-        return (
-            room.left - reach < x < room.left + room.width + reach
-            and room.bottom - reach < y < room.bottom + room.height + reach
-        )
-
-
-def _seen(points: Array, matrix: Array) -> Array:
-    return points @ matrix[:2, :2].T + matrix[:2, 2]
-
-
-# How is a spring between two points drawn: its wire, over everything, and the pins that it is hooked to?
 
 WIRE, HALO = 1.8, 3.8  # pixels at 1280 × 720: the wire, and the pale rim that parts it from what lies below
 PIN = 3.0
@@ -114,7 +97,7 @@ class LineSpringPatches:
     def patches(self, frames: dict[str, Array], matrix: Array) -> Iterator[LastingPatch]:
         """To be drawn for the poses x, y, angle of one instant; `matrix` maps metres to pixels. The next call moves them."""
         for spring, (halo, wire, *pins) in self._drawn:
-            line = spring.line(frames) @ matrix[:2, :2].T + matrix[:2, 2]
+            line = seen(spring.line(frames), matrix)
             halo.set_path(Path(line))
             wire.set_path(Path(line))
             for pin, place in zip(pins, (line[0], line[-1]), strict=True):
@@ -122,8 +105,6 @@ class LineSpringPatches:
             yield from (halo, wire, *pins)
 
 
-# Where does the stop of a spring stand, and on what?
-#
 # A stop has no place of its own: it only says at which angle, or after which travel, its body comes to a stop. It is drawn as a
 # pin that the body then touches, on the side to which the spring presses, far out on the body's longest arm.
 
@@ -205,9 +186,6 @@ def _along(points: Array, body: Body, frame: Array, stop: float, side: float) ->
     return (float(spot[0]), float(spot[1])), radius
 
 
-# How is the stop of a spring drawn: a pin of the colour of what never moves, over everything?
-
-
 class SpringStopPatches:
     """The pins of a scene; `own` makes a patch one of the picture's, `unit` is the size of everything drawn."""
 
@@ -226,8 +204,6 @@ class SpringStopPatches:
             place.set_matrix(matrix if pin.on is None else matrix @ pose_matrix(frames[pin.on]))
             yield patch
 
-
-# Of which patches is the mechanism in a picture made, and in which order do they lie?
 
 CHORD = 0.05  # pixels that a chord may stray from its arc
 HATCH = 13.0  # pixels between hatch strokes
@@ -328,24 +304,16 @@ class Mechanism:
 
     def _shadow(self, part: Part) -> LastingPatch:
         shift = Affine2D().translate(SHADOW[0] * self._unit, SHADOW[1] * self._unit)
-        return self.own(
-            LastingPatch(part.faces, facecolor=self._style.shade, linewidth=0.0, transform=self._transforms[part.body] + shift)
-        )
+        place = self._transforms[part.body] + shift
+        return self.own(LastingPatch(part.faces, facecolor=self._style.shade, linewidth=0.0, transform=place))
 
     def _spoke(self, name: str) -> LastingPatch:
         """A radius drawn on a body so round that its turning could not be seen."""
         body = self._scene.body(name)
-        bore = max(
-            (edge.radius for loop in loops_of(body) if loop.hole for edge in loop.edges if isinstance(edge, Arc)), default=0.0
-        )
-        reach = 0.5 * size_of(body)
-        path = Path([(bore, 0.0), (bore + 0.9 * (reach - bore), 0.0)])
-        width = max(2.0 * self._unit, 1.0)
-        return self.own(
-            LastingPatch(
-                path, fill=False, edgecolor=self._style.ink, linewidth=width, capstyle="round", transform=self._transforms[name]
-            )
-        )
+        first, last = spoke(body, size_of(body))
+        path = Path([(first, 0.0), (last, 0.0)])
+        look = {"edgecolor": self._style.ink, "linewidth": max(2.0 * self._unit, 1.0), "capstyle": "round"}
+        return self.own(LastingPatch(path, fill=False, transform=self._transforms[name], **look))
 
     def _pivots(self) -> list[LastingPatch]:
         """A small ring at every pivot; those on carriers move with them."""
@@ -357,7 +325,7 @@ class Mechanism:
         places = [body.position for body in pivoted if body.on is None]
         patches = []
         if places:
-            rings = _rings(np.array(places) @ matrix[:2, :2].T + matrix[:2, 2], radius)
+            rings = _rings(seen(np.array(places), matrix), radius)
             patches.append(self.own(LastingPatch(rings, transform=IdentityTransform(), **look)))
         moved = _rings(np.zeros((1, 2)), radius / self._view.scale)
         names = [body.name for body in pivoted if body.on is not None]

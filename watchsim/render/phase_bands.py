@@ -1,48 +1,26 @@
-"""How is speed against error drawn?"""
+"""How are the phases of a beat shown in a plot: bands behind the curves, and their names?
+
+plot_phases(run).savefig("phases.pdf") draws wheel, lever and balance through the phases: angles and angular velocities.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable, Sequence
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
 
 from watchsim.analysis.phases import Phase
 from watchsim.analysis.timeline import Beat, Stage, shown_beats, title
+from watchsim.render import style
 from watchsim.render.palette import ELSE, FAINT, INK, PHASE_LINES, PHASES, SECOND, looks
-from watchsim.render.style import (
-    CURVE,
-    EDGE,
-    FULL,
-    HAIR,
-    LEAD,
-    LETTER,
-    MM,
-    NARROW,
-    POINT,
-    SERIES,
-    SMALL,
-    dress,
-    figure,
-    heading,
-    limits,
-    panel,
-    save,
-)
-from watchsim.render.style import title as title_of_style
 from watchsim.render.view import dense
 from watchsim.scene.roles import with_anchor
-from watchsim.simulation.trajectory import Trajectory
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-
-# How are the phases of a beat shown in a plot: bands behind the curves, and their names?
+from watchsim.simulation.trajectory import Array, Trajectory
 
 SWATCH, GAP = 2.6, 1.0  # mm
 APART = 3.5  # mm, from one name to the next swatch
@@ -65,10 +43,14 @@ def strong(name: str) -> str:
     return PHASE_LINES.get(name, FAINT)
 
 
+def beat_name(beat: Beat) -> str:
+    """Its number and the stone that acts in it."""
+    stone = beat.stages[0].pallet
+    return f"beat {beat.stages[0].beat}{f', {stone} stone' if stone else ''}"
+
+
 def shade(axes: Axes, phases: Iterable[Phase], zero: float = 0.0, factor: float = 1e3, grey: bool = False) -> None:
     """A band for each phase of one beat, at (time - zero)·factor; the limits of the axes stay as they are."""
-    from matplotlib.patches import Rectangle
-
     place = axes.get_xaxis_transform(which="grid")
     for phase, colour in bands(phases):
         start, end = factor * (phase.start - zero), factor * (phase.end - zero)
@@ -81,33 +63,36 @@ def name_above(axes: Axes, stages: Sequence[Stage], zero: float, factor: float =
     low, high = axes.get_xlim()
     shown = [stage for stage in stages if stage.name != "locked"]
     middles = [0.5 * factor * (stage.phase.start + stage.phase.end - 2.0 * zero) for stage in shown]
-    box = axes.get_window_extent()
-    wide, tall = (pixels / axes.figure.dpi / MM for pixels in (box.width, box.height))
+    wide, tall = style.width_mm(axes), style.height_mm(axes)
     line, gap = 2.6 / tall, 3.0 / tall
     for stage, middle, place in zip(shown, middles, spread(middles, 4.2 * (high - low) / wide), strict=True):
         where, top = (middle - low) / (high - low), (place - low) / (high - low)
-        style: dict[str, Any] = {"transform": axes.transAxes, "color": FAINT, "linewidth": HAIR, "clip_on": False, "zorder": 1}
-        axes.plot((where, top), (1.0, 1.0 + line), **style)
-        look: dict[str, Any] = {"rotation": 90.0, "fontsize": SMALL, "ha": "center", "va": "bottom", "color": INK}
+        thin: dict[str, Any] = {
+            "transform": axes.transAxes,
+            "color": FAINT,
+            "linewidth": style.HAIR,
+            "clip_on": False,
+            "zorder": 1,
+        }
+        axes.plot((where, top), (1.0, 1.0 + line), **thin)
+        look: dict[str, Any] = {"rotation": 90.0, "fontsize": style.SMALL, "ha": "center", "va": "bottom", "color": INK}
         axes.text(top, 1.0 + gap, title(stage), transform=axes.transAxes, **look)
 
 
 def name_key(figure: Figure, names: Iterable[str], top: float, lines: bool = False) -> float:
     """Swatches with the names of phases from the upper left on, `top` mm below the upper edge; where they end, mm."""
-    from matplotlib.patches import Rectangle
-
-    wide, high = (inches / MM for inches in figure.get_size_inches())
-    row = LEAD * SMALL * POINT
-    x, y = EDGE, top + 0.5 * row
+    wide, high = style.size_mm(figure)
+    row = style.LEAD * style.SMALL * style.POINT
+    x, y = style.EDGE, top + 0.5 * row
     for name in names:
-        own = SWATCH + GAP + LETTER * SMALL * POINT * len(name)
-        if x > EDGE and x + own > wide - EDGE:
-            x, y = EDGE, y + 1.15 * row
+        own = SWATCH + GAP + style.LETTER * style.SMALL * style.POINT * len(name)
+        if x > style.EDGE and x + own > wide - style.EDGE:
+            x, y = style.EDGE, y + 1.15 * row
         tall = 0.7 if lines else 0.7 * row
         colour = strong(name) if lines else PHASES.get(name, ELSE)
         place, size = (x / wide, 1.0 - (y + 0.5 * tall) / high), (SWATCH / wide, tall / high)
         figure.add_artist(Rectangle(place, *size, color=colour, linewidth=0.0, transform=figure.transFigure))
-        figure.text((x + SWATCH + GAP) / wide, 1.0 - y / high, name, fontsize=SMALL, va="center_baseline", color=INK)
+        figure.text((x + SWATCH + GAP) / wide, 1.0 - y / high, name, fontsize=style.SMALL, va="center_baseline", color=INK)
         x += own + APART
     return y + 0.5 * row
 
@@ -127,10 +112,6 @@ def spread(places: Sequence[float], least: float) -> list[float]:
     return moved if all(math.isfinite(place) for place in moved) else list(places)
 
 
-# How do wheel, lever and balance move through the phases of a beat: angles and angular velocities, phases shaded and named?
-
-Array = NDArray[np.float64]
-
 PANEL, TOP, FOOT, LEFT, RIGHT, BETWEEN = 25.0, 35.0, 3.0, 13.5, 3.0, 11.0  # mm
 LABEL_AT = 10.5  # mm, of the label left of its panel
 BEFORE, AFTER = 0.08, 0.12  # of a beat's phases: what is shown besides
@@ -138,7 +119,7 @@ MANY = 2  # beats that are drawn one by one
 
 
 def plot_phases(
-    run: Trajectory, window: Sequence[float] | None = None, width: float = FULL, beats: list[Beat] | None = None
+    run: Trajectory, window: Sequence[float] | None = None, width: float = style.FULL, beats: list[Beat] | None = None
 ) -> Figure:
     """A figure `width` mm wide: left the whole window (s; default the last oscillation), then its last two beats at large.
 
@@ -147,18 +128,16 @@ def plot_phases(
     beats = beats or shown_beats(run, window, rubbed=False)
     span = (beats[0].start, beats[-1].end) if window is None else (float(window[0]), float(window[1]))
     span = (max(span[0], float(run.t[0])), min(span[1], float(run.t[-1])))
-    large = beats[-MANY:]
-    columns = [*([None] if width >= NARROW else []), *large]
+    columns = [*([None] if width >= style.NARROW else []), *beats[-MANY:]]
     parts = with_anchor(run.scene)
     names = list(dict.fromkeys(name for name in (parts.wheel, parts.lever, parts.oscillator) if name))
     rows = 2 * len(names)
-    height = TOP + rows * PANEL + FOOT
-    made = figure(width, height)
-    heading(made, run.scene.title, f"t = {span[0]:.4f} s to {span[1]:.4f} s")
+    made = style.figure(width, TOP + rows * PANEL + FOOT)
+    style.heading(made, run.scene.title, f"t = {span[0]:.4f} s to {span[1]:.4f} s")
     wide = (width - LEFT - RIGHT - (len(columns) - 1) * BETWEEN) / len(columns)
     for c, beat in enumerate(columns):
         left = LEFT + c * (wide + BETWEEN)
-        panels = [panel(made, left, TOP + r * PANEL - 1.5, wide, PANEL - 5.0) for r in range(rows)]
+        panels = [style.panel(made, left, TOP + r * PANEL - 1.5, wide, PANEL - 5.0) for r in range(rows)]
         _column(panels, run, names, span if beat is None else around(beat, run), beat, beats, first=c == 0)
     return made
 
@@ -190,12 +169,12 @@ def _column(
             (panels[2 * k], np.degrees(q[:, column]), f"{name} (°)"),
             (panels[2 * k + 1], 1e-3 * np.degrees(u[:, column]), f"{name} (1000 °/s)"),
         ):
-            axes.plot(x, values, color=colour, linewidth=CURVE, solid_joinstyle="round", zorder=3)
+            axes.plot(x, values, color=colour, linewidth=style.CURVE, solid_joinstyle="round", zorder=3)
             axes.set_xlim(1e3 * (span[0] - zero), 1e3 * (span[1] - zero))
             _numbers(axes, values)
             if first:
-                axes.set_ylabel(unit, fontsize=SMALL, color=colour, weight="bold")
-                axes.yaxis.set_label_coords(-LABEL_AT / _width(axes), 0.5)
+                axes.set_ylabel(unit, fontsize=style.SMALL, color=colour, weight="bold")
+                axes.yaxis.set_label_coords(-LABEL_AT / style.width_mm(axes), 0.5)
     for axes in panels:
         for one in beats if beat is None else [beat]:
             shade(axes, (stage.phase for stage in one.stages), zero, grey=beat is None)
@@ -203,78 +182,15 @@ def _column(
         axes.set_xticklabels([])
     stone = f", {beat.stages[0].pallet} stone" if beat is not None and beat.stages[0].pallet else ""
     words = f"ms after t = {zero:.4f} s" if beat is None else f"ms from {beat.first.removeprefix('beginning of the ')}{stone}"
-    panels[-1].set_xlabel(words, fontsize=SMALL, labelpad=1.5)
+    panels[-1].set_xlabel(words, fontsize=style.SMALL, labelpad=1.5)
     if beat is not None:
         name_above(panels[0], beat.stages, zero)
 
 
 def _numbers(axes: Axes, values: Array) -> None:
-    from matplotlib.ticker import MaxNLocator
-
-    dress(axes)
-    limits(axes, float(values.min()), float(values.max()), 0.1)
-    axes.xaxis.set_major_locator(MaxNLocator(nbins=5, steps=[1, 2, 5, 10]))
-    axes.yaxis.set_major_locator(MaxNLocator(nbins=4, steps=[1, 2, 3, 5, 9, 10]))
+    style.dress(axes)
+    style.limits(axes, float(values.min()), float(values.max()), 0.1)
+    style.ticks(axes.xaxis, 5)
+    style.ticks(axes.yaxis, 4, [1, 2, 3, 5, 9, 10])
     axes.ticklabel_format(useOffset=False)
-    axes.tick_params(labelsize=SMALL)
-
-
-def _width(axes: Axes) -> float:
-    """Of a panel, mm."""
-    return float(axes.get_window_extent().width) / axes.figure.dpi / MM
-
-
-# How is speed against error drawn?
-
-COLOURS = dict(
-    zip(("pfeiffer-glocker", "pymunk", "mujoco", "box2d", "moreau"), (SERIES[0], *SERIES[1:4], SERIES[5]), strict=True)
-)
-NAMES = {
-    **{"pfeiffer-glocker": "watchsim, by events", "moreau": "watchsim, Moreau's time stepping"},
-    **{"pymunk": "pymunk", "box2d": "Box2D", "mujoco": "MuJoCo"},
-}
-MARKS = {"pfeiffer-glocker": "o", "moreau": "s", "pymunk": "^", "box2d": "v", "mujoco": "D"}
-AXES = (("error_state", "error of the place after 3 s (m)"), ("error_amplitude_deg", "error of the amplitude (°)"))
-ACROSS = 3  # panels beside each other
-TALL = 62.0  # mm, a row of panels
-LEAST = 1e-14  # what comes out exactly is drawn here
-
-
-def plot_speed(rows: Sequence[Mapping[str, Any]], path: Path) -> None:
-    """Processor time per simulated second over error, both logarithmic, a panel for each scene; the file's ending decides."""
-    scenes = [name for name in dict.fromkeys(row["scene"] for row in rows) if _drawn(rows, name)]
-    across, down = min(ACROSS, len(scenes)), -(-len(scenes) // ACROSS)
-    made = figure(FULL, TALL * down, layout="constrained")
-    panels = made.subplots(down, across, squeeze=False).ravel()
-    for axes, scene in zip(panels, scenes, strict=False):
-        _panel(axes, scene, [row for row in rows if row["scene"] == scene])
-    for empty in panels[len(scenes) :]:
-        empty.set_axis_off()
-    for first in panels[::across]:
-        first.set_ylabel("time per simulated second (s)")
-    shown = {label: line for axes in panels for line, label in zip(*axes.get_legend_handles_labels(), strict=True)}
-    made.legend(list(shown.values()), list(shown), loc="outside lower center", ncols=len(shown), frameon=False, fontsize=SMALL)
-    save(made, path)
-
-
-def _drawn(rows: Sequence[Mapping[str, Any]], scene: str) -> bool:
-    """Scenes in which more than one engine took part."""
-    return len({row["method"] for row in rows if row["scene"] == scene}) > 1
-
-
-def _panel(axes: Axes, scene: str, rows: Sequence[Mapping[str, Any]]) -> None:
-    name, label = next(axis for axis in AXES if any(row[axis[0]] is not None for row in rows))
-    for method in dict.fromkeys(row["method"] for row in rows):
-        points = [row for row in rows if row["method"] == method and row[name] is not None and not row["note"]]
-        x = [max(row[name], LEAST) for row in points]
-        y = [row["wall_s_per_simulated_s"] for row in points]
-        spread = [[t - row["wall_least"] for t, row in zip(y, points, strict=True)]]
-        spread.append([row["wall_largest"] - t for t, row in zip(y, points, strict=True)])
-        if points:
-            look: dict[str, Any] = {"color": COLOURS[method], "marker": MARKS[method], "label": NAMES[method]}
-            axes.errorbar(x, y, yerr=spread, linewidth=CURVE, elinewidth=HAIR, markersize=3.5, **look)
-    axes.set_xscale("log")
-    axes.set_yscale("log")
-    title_of_style(axes, scene)
-    axes.set_xlabel(label)
-    dress(axes)
+    axes.tick_params(labelsize=style.SMALL)

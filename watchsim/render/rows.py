@@ -2,7 +2,8 @@
 
 In every column of dots the first, the last, the least and the largest value: a line through them covers the very same dots
 (Jugel et al., M4: a visualization-oriented time series data aggregation, VLDB 2014), and no spike is lost, be it one sample
-long.
+long. `thinned` does so for a record of millions of rows, `reduced` for one curve, `bands` for areas, `distinct` for curves that
+are no functions. `kept_rows` serves players instead: it leaves out the rows that interpolation brings back.
 """
 
 from __future__ import annotations
@@ -13,23 +14,18 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.simulation.trajectory import Trajectory
+from watchsim.simulation.trajectory import Array, Trajectory
 from watchsim.storage.columns import blocks, let_go
 
-# Which points does a curve of millions need, so that it looks as if all were drawn?
-#
-# Of each stretch of time, finer than the dots of the picture, the first and last point and every column's least and largest:
-# what
-# lies between them is drawn over.
+Rows = NDArray[np.intp]
 
-STRETCHES = 8000  # of the picture's width, some thousand dots
+STRETCHES = 8000  # columns of a record: finer than the dots of any picture
 AT_ONCE = 2000  # rows that are looked up together
 POINTS = 1_000_000  # a record with more rows in the window than that is thinned
+COLUMNS = 4000  # of a panel: more than 600 dots per inch over 170 mm
 
-Array = NDArray[np.float64]
 
-
-def thinned(run: Trajectory, window: tuple[float, float]) -> NDArray[np.intp]:
+def thinned(run: Trajectory, window: tuple[float, float]) -> Rows:
     """The rows to draw of those inside the window, in order; all of them where they are not so many."""
     start, stop = window
     first, last = int(np.searchsorted(run.t, start, side="right")), int(np.searchsorted(run.t, stop, side="left"))
@@ -37,70 +33,19 @@ def thinned(run: Trajectory, window: tuple[float, float]) -> NDArray[np.intp]:
         return np.arange(first, last)
     found, offset = [], first
     for t, *motion in blocks(*(array[first:last] for array in (run.t, run.q, run.u, run.a))):
-        stretch = np.minimum(((t - start) * (STRETCHES / (stop - start))).astype(np.int64), STRETCHES - 1)
-        begins = np.flatnonzero(np.diff(stretch, prepend=-1))
-        rows = [begins, np.append(begins[1:], len(t)) - 1]
-        lengths = np.diff(np.append(begins, len(t)))
-        for column in np.hstack(motion).T:
-            for extreme in (np.minimum, np.maximum):
-                met = np.flatnonzero(column == np.repeat(extreme.reduceat(column, begins), lengths))
-                rows.append(met[np.flatnonzero(np.diff(stretch[met], prepend=-1))])
-        found.append(offset + np.unique(np.concatenate(rows)))
+        column = _columns(t, STRETCHES, start, stop)
+        found.append(offset + np.unique(np.concatenate(_kept(column, np.hstack(motion).T))))
         offset += len(t)
     return np.concatenate(found)
-
-
-def taken(array: NDArray[np.float64], rows: NDArray[np.intp]) -> Array:
-    """These rows of an array that may lie in a file."""
-    parts = []
-    for (part,) in blocks(rows, length=AT_ONCE):
-        first, last = part[0], part[-1]
-        parts.append(array[first : last + 1] if last - first == len(part) - 1 else array[part])  # they rise
-        let_go(array)
-    return np.concatenate(parts) if parts else array[:0]
-
-
-# Which rows may be left out, so that what is interpolated between the others stays where it was?
-
-
-def kept_rows(count: int, fits: Callable[[int, int], bool], ends: Iterable[int] = ()) -> NDArray[np.int64]:
-    """Rows of 0 … count - 1 to keep, in order: the first, the last, those in `ends`, and as many between as it takes.
-
-    `fits(i, j)` says whether all rows between i and j are represented well enough by these two.
-    """
-    forced = sorted({0, count - 1, *ends}) if count else []
-    kept = set(forced)
-    open_parts = [(i, j) for i, j in pairwise(forced) if j > i + 1]
-    while open_parts:
-        i, j = open_parts.pop()
-        if fits(i, j):
-            continue
-        middle = (i + j) // 2
-        kept.add(middle)
-        open_parts += [(low, high) for low, high in ((i, middle), (middle, j)) if high > low + 1]
-    return np.array(sorted(kept), np.int64)
-
-
-# Which points does a dense curve need, so that it looks as if all were drawn?
-
-COLUMNS = 4000  # of a panel: more than 600 dots per inch over 170 mm
 
 
 def reduced(x: Array, y: Array, columns: int = COLUMNS) -> tuple[Array, Array]:
     """The points of a curve over rising `x` that a picture so many columns wide needs, in order; gaps (nan) stay gaps."""
     if len(x) <= 4 * columns or not x[-1] > x[0]:
         return x, y
-    place = _columns(x, columns)
-    begins = np.flatnonzero(np.diff(place, prepend=-1))
-    ends = np.append(begins[1:], len(x)) - 1
-    lengths = ends - begins + 1
+    kept = _kept(_columns(x, columns), y[None])
+    # A gap stays one: its first row, and the rows before and after it.
     gaps = np.isnan(y)
-    kept = [begins, ends]
-    for extreme, missing in ((np.minimum, np.inf), (np.maximum, -np.inf)):
-        found = extreme.reduceat(np.where(gaps, missing, y), begins)
-        met = np.flatnonzero(y == np.repeat(found, lengths))
-        kept.append(met[np.flatnonzero(np.diff(place[met], prepend=-1))])
-    # A gap stays one: its first row, and the row before it.
     opened = np.flatnonzero(gaps & ~np.concatenate(([False], gaps[:-1])))
     closed = np.flatnonzero(gaps & ~np.concatenate((gaps[1:], [False])))
     kept += [opened, np.maximum(opened - 1, 0), np.minimum(closed + 1, len(x) - 1)]
@@ -125,11 +70,6 @@ def bands(x: Array, y: Array, columns: int = COLUMNS) -> list[tuple[Array, Array
     return [(middle[i:j], low[i:j], high[i:j]) for i, j in edges.reshape(-1, 2).tolist()]
 
 
-def _columns(x: Array, columns: int) -> NDArray[np.int64]:
-    """In which column each point stands."""
-    return np.minimum(((x - x[0]) * (columns / (x[-1] - x[0]))).astype(np.int64), columns - 1)
-
-
 def distinct(x: Array, y: Array, cells: int = COLUMNS) -> tuple[Array, Array]:
     """The points of a curve that need not be a function: those that stand in another dot than the one before or after them."""
     if len(x) <= cells:
@@ -142,3 +82,55 @@ def distinct(x: Array, y: Array, cells: int = COLUMNS) -> tuple[Array, Array]:
     moved = (np.diff(marks[0]) != 0.0) | (np.diff(marks[1]) != 0.0)
     kept = np.concatenate(([True], moved)) | np.concatenate((moved, [True]))
     return x[kept], y[kept]
+
+
+def _columns(x: Array, columns: int, start: float | None = None, stop: float | None = None) -> Rows:
+    """In which column each point stands, of so many from `start` to `stop` (default the first and last point)."""
+    start, stop = (x[0] if start is None else start), (x[-1] if stop is None else stop)
+    return np.minimum(((x - start) * (columns / (stop - start))).astype(np.int64), columns - 1)
+
+
+def _kept(column: Rows, curves: Iterable[Array]) -> list[Rows]:
+    """Rows of the first and last point of each column, and of the least and largest value of each curve there."""
+    begins = np.flatnonzero(np.diff(column, prepend=-1))
+    ends = np.append(begins[1:], len(column))
+    kept = [begins, ends - 1]
+    for values in curves:
+        for extreme in (np.fmin, np.fmax):
+            met = np.flatnonzero(values == np.repeat(extreme.reduceat(values, begins), ends - begins))
+            kept.append(met[np.flatnonzero(np.diff(column[met], prepend=-1))])
+    return kept
+
+
+def taken(array: Array, rows: Rows) -> Array:
+    """These rows of an array that may lie in a file."""
+    parts = []
+    for (part,) in blocks(rows, length=AT_ONCE):
+        first, last = part[0], part[-1]
+        parts.append(array[first : last + 1] if last - first == len(part) - 1 else array[part])  # they rise
+        let_go(array)
+    return np.concatenate(parts) if parts else array[:0]
+
+
+def kept_rows(count: int, fits: Callable[[int, int], bool], ends: Iterable[int] = ()) -> NDArray[np.int64]:
+    """Rows of 0 … count - 1 to keep, in order: the first, the last, those in `ends`, and as many between as it takes.
+
+    `fits(i, j)` says whether all rows between i and j are represented well enough by these two.
+    """
+    forced = sorted({0, count - 1, *ends}) if count else []
+    kept = set(forced)
+    open_parts = [(i, j) for i, j in pairwise(forced) if j > i + 1]
+    while open_parts:
+        i, j = open_parts.pop()
+        if fits(i, j):
+            continue
+        middle = (i + j) // 2
+        kept.add(middle)
+        open_parts += [(low, high) for low, high in ((i, middle), (middle, j)) if high > low + 1]
+    return np.array(sorted(kept), np.int64)
+
+
+def off_line(t: Array, values: Array, i: int, j: int) -> Array:
+    """How far (j - i - 1, n) the rows between i and j of `values` (m, n) lie off the straight line from i to j."""
+    s = ((t[i + 1 : j] - t[i]) / (t[j] - t[i]))[:, None]
+    return np.abs(values[i] + s * (values[j] - values[i]) - values[i + 1 : j])

@@ -1,4 +1,8 @@
-"""How does what a picture shows besides the mechanism share the room with it, and how is it drawn?"""
+"""What does one frame show: the mechanism, and what is asked for beside it?
+
+The background (fixed bodies, title, scale, names) is drawn once; then one patch per part is moved by its transform and the
+changing numbers are copied in. Frames do not depend on one another.
+"""
 
 from __future__ import annotations
 
@@ -12,20 +16,17 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.transforms import IdentityTransform
-from numpy.typing import NDArray
 
 from watchsim.analysis.phases import Phase
-from watchsim.render.insets import Inset, InsetPicture, Strip, beside, insets
+from watchsim.render.insets import InsetPicture, Strip, beside, insets
 from watchsim.render.marks import Clock, arrow_path, changing_speed_text, turn_text
 from watchsim.render.palette import LIGHT, Style
 from watchsim.render.parts import Edges, LastingPatch, loops_of
 from watchsim.render.patches import Mechanism
-from watchsim.render.view import Frame, View, Window, view
+from watchsim.render.view import Frame, Pixels, View, Window, seen, view
 from watchsim.render.words import Words, draw_key, draw_notes, draw_rules, draw_scale, lay_out, relative_size
-from watchsim.simulation.trajectory import Trajectory
+from watchsim.simulation.trajectory import Array, Trajectory
 from watchsim.units import metric
-
-# What does a picture show besides the mechanism, if asked?
 
 
 @dataclass(frozen=True)
@@ -53,8 +54,6 @@ NOTHING = Extras()
 STRIP_WIDE, STRIP_TALL = 0.27, 0.2  # share of a wide and of a tall picture's height that the strip takes
 ARROW = 0.15  # of the smaller side of the room: the longest arrow
 
-
-# How does what a picture shows besides the mechanism share the room with it, and how is it drawn?
 
 LEAST = 60.0  # pixels of height that must be left for the mechanism
 PAD = 24.0  # pixels at 1280 × 720
@@ -110,15 +109,12 @@ class Beside:
         self.room, self._boxes = shared.room, shared.insets
         self._longest = ARROW * min(self.room.width, self.room.height)
         self._insets: list[InsetPicture] = []
-        self._made: list[Inset] = []
 
     def look_at(self, view: View) -> None:
         """Prepare the insets, which stand the same way up as the picture's own view."""
         self._turn = view.turn
-        self._made = insets(self._run, self._window, self._extras.insets, self._boxes, view.turn)
-        self._insets = [
-            InsetPicture(self._figure, self._run.scene, one, self._unit, self._words, self._style) for one in self._made
-        ]
+        made = insets(self._run, self._window, self._extras.insets, self._boxes, view.turn)
+        self._insets = [InsetPicture(self._figure, self._run.scene, one, self._unit, self._words, self._style) for one in made]
 
     def arrows(self, matrix: Array, points: Array, forces: Array) -> list[LastingPatch]:
         """Arrows for forces (n, 2), N, at points (n, 2), m, in a picture with this map."""
@@ -126,7 +122,7 @@ class Beside:
             return []
         turn = matrix[:2, :2] / np.hypot(*matrix[:2, 0])
         ways = forces @ turn.T * (self._longest / self._extras.force)
-        path = arrow_path(points @ matrix[:2, :2].T + matrix[:2, 2], ways, self._longest)
+        path = arrow_path(seen(points, matrix), ways, self._longest)
         return [] if path is None else [self._arrow(path)]
 
     def draw(
@@ -139,8 +135,8 @@ class Beside:
         out_pixels: Pixels,
     ) -> None:
         """Draw everything for the poses of the instant `t`, in a picture whose map from metres is `matrix`."""
-        for picture, one in zip(self._insets, self._made, strict=True):
-            picture.place_in(matrix, one.centre(frames), self.room).draw(renderer)
+        for picture in self._insets:
+            picture.place_in(matrix, frames, self.room).draw(renderer)
         for picture in self._insets:
             picture.draw(renderer, frames, marks, out_pixels)
         self._key(renderer, out_pixels)
@@ -184,14 +180,6 @@ class Beside:
         patch.set_figure(self._figure)
         return patch
 
-
-# What does one frame show?
-#
-# The background (fixed bodies, title, scale, names) is drawn once; then one patch per part is moved by its transform and
-# the changing numbers are copied in. Frames do not depend on one another.
-
-Array = NDArray[np.float64]
-Pixels = NDArray[np.uint8]
 
 DPI = 72.0  # one point is one pixel
 
@@ -264,7 +252,7 @@ class Stage:
         def touching(matrix: Array) -> list[LastingPatch]:
             made: list[LastingPatch] = []
             if contacts is not None and len(contacts) > 0:
-                made = self._mechanism.rings(contacts @ matrix[:2, :2].T + matrix[:2, 2], mark or self._style.contact)
+                made = self._mechanism.rings(seen(contacts, matrix), mark or self._style.contact)
             return made if press is None else made + self._beside.arrows(matrix, *press)
 
         for patch in touching(matrix):

@@ -1,4 +1,7 @@
-"""Which phases of which beats pass while a window is shown, where it shows so few that they can be seen?"""
+"""What do all plots have in common: width in print, sizes of letters, axes, the stretch of time that they show?
+
+A figure is as wide as it will be printed, so that a letter of 6 pt here is one of 6 pt there. Pages under docs/ use the same.
+"""
 
 from __future__ import annotations
 
@@ -7,11 +10,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.text import Text
+from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from watchsim.analysis.phases import Phase, phases
@@ -21,16 +28,6 @@ from watchsim.render.palette import FAINT, GRID, INK
 from watchsim.render.view import Window, recorded, stretch
 from watchsim.scene.roles import frequency, keeps_time, with_anchor
 from watchsim.simulation.trajectory import Trajectory
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.axis import Axis
-    from matplotlib.text import Text
-
-
-# What do all plots have in common: width in print, sizes of letters, colours, axes?
-#
-# A figure is as wide as it will be printed, so that a letter of 6 pt here is one of 6 pt there. Pages under docs/ use the same.
 
 MM = 1.0 / 25.4  # inches
 POINT = 1.0 / 72.0 / MM  # mm
@@ -54,36 +51,52 @@ MAP = "cividis"  # even in lightness, for every kind of colour vision
 
 def figure(width: float = FULL, height: float = COLUMN, layout: Literal["constrained"] | None = None) -> Figure:
     """An empty figure of this size in mm that can be saved, and that a notebook shows."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-
     made = ShownFigure(figsize=(width * MM, height * MM), dpi=DPI, facecolor="white", layout=layout)
     FigureCanvasAgg(made)
     return made
 
 
+def size_mm(figure: Figure) -> tuple[float, float]:
+    """Width and height."""
+    wide, high = (float(inches) / MM for inches in figure.get_size_inches())
+    return wide, high
+
+
+def width_mm(axes: Axes) -> float:
+    """Of a panel."""
+    return float(axes.get_window_extent().width) / axes.figure.dpi / MM
+
+
+def height_mm(axes: Axes) -> float:
+    """Of a panel."""
+    return float(axes.get_window_extent().height) / axes.figure.dpi / MM
+
+
+def ticks(axis: Axis, most: int, steps: Sequence[float] = (1, 2, 5, 10)) -> None:
+    """Numbers at multiples of `steps`, about so many."""
+    axis.set_major_locator(MaxNLocator(nbins=most, steps=steps))
+
+
+def minus(text: str) -> str:
+    """The text with true minus signs."""
+    return text.replace("-", "−")
+
+
 def panel(figure: Figure, left: float, top: float, width: float, height: float) -> Axes:
     """Axes at a place in mm from the figure's upper left corner."""
-    wide, high = (inches / MM for inches in figure.get_size_inches())
+    wide, high = size_mm(figure)
     return figure.add_axes((left / wide, 1.0 - (top + height) / high, width / wide, height / high))
 
 
 def heading(figure: Figure, title: str, words: str = "") -> None:
     """A title and a line below it, at the upper left; what does not fit is cut."""
-    wide, high = (inches / MM for inches in figure.get_size_inches())
+    wide, high = size_mm(figure)
     look: dict[str, Any] = {"ha": "left", "va": "center", "color": INK}
     made = [figure.suptitle(cut(title), x=EDGE / wide, y=1.0 - 4.0 / high, fontsize=TITLE, weight="bold", **look)]
     if words:
         made.append(figure.text(EDGE / wide, 1.0 - 8.5 / high, cut(words), fontsize=LABEL, **look))
     for text in made:
         fit(text, wide - 2.0 * EDGE)
-
-
-def without_help() -> None:
-    """Have matplotlib make no help texts about properties when it is loaded: a third of its loading."""
-    from matplotlib.artist import Artist
-
-    if hasattr(Artist, "_update_set_signature_and_docstring"):
-        Artist._update_set_signature_and_docstring = classmethod(lambda _: None)
 
 
 def cut(words: str) -> str:
@@ -161,8 +174,6 @@ def save(figure: Figure, path: Path | str) -> None:
     Path(path).write_bytes(made.getvalue())
 
 
-# In which unit are energies of that size told: those of a watch in nJ, those of a clock in µJ or mJ?
-
 UNITS = ((1e9, "nJ"), (1e6, "µJ"), (1e3, "mJ"), (1.0, "J"))
 MOST = 1e4  # in that unit
 
@@ -171,8 +182,6 @@ def energy_unit(largest: float) -> tuple[float, str]:
     """How many to the joule, and the unit's name, such that `largest` (J) has at most four digits before its point."""
     return next((one for one in UNITS if abs(largest) * one[0] < MOST), UNITS[-1])
 
-
-# How does a figure show itself in a notebook, without a magic word?
 
 SCREEN = 134  # dots per inch: a page's width is 900 dots, in which letters of 6 pt can be read
 COLOURS = 32  # of a small picture: a palette makes it small
@@ -198,10 +207,8 @@ def small_png(figure: Figure, dots: int) -> bytes:
     return small.getvalue()
 
 
-# How much room do the words around the panels of a plot need?
-#
-# Worked out from the number of characters. matplotlib's own layouts draw everything twice more to measure it, which takes
-# longer than the plot.
+# The room for words around panels is worked out from the number of characters. matplotlib's own layouts draw everything twice
+# more to measure it, which takes longer than the plot.
 
 INCH = 72.0  # pt
 DIGIT = 0.637  # width of a digit over its size, in matplotlib's own font
@@ -243,12 +250,10 @@ def place_panels(figure: Figure, panels: NDArray[np.object_], above: float) -> N
 
 def spare_labels(axis: Axis, length: float, steps: Sequence[float], most: int = 5) -> None:
     """Numbers at multiples of `steps`, at most so many, and so few that they stand apart on an x axis of that length (pt)."""
-    from matplotlib.ticker import MaxNLocator
-
     for bins in range(most, 0, -1):
-        axis.set_major_locator(MaxNLocator(nbins=bins, steps=steps))
-        ticks = _ticks(axis)
-        apart = length * (ticks[1] - ticks[0]) / float(np.ptp(axis.get_view_interval())) if len(ticks) > 1 else length
+        ticks(axis, bins, steps)
+        places = _ticks(axis)
+        apart = length * (places[1] - places[0]) / float(np.ptp(axis.get_view_interval())) if len(places) > 1 else length
         if _label_width(axis) + GAP <= apart:
             return
 
@@ -264,8 +269,6 @@ def _ticks(axis: Axis) -> list[float]:
     low, high = sorted(axis.get_view_interval())
     return [tick for tick in axis.get_major_locator().tick_values(low, high) if low <= tick <= high]
 
-
-# Which phases of which beats pass while a window is shown, where it shows so few that they can be seen?
 
 MOST_PASSING_PHASES = 12  # beats; of more the phases would be hairlines
 
@@ -286,8 +289,6 @@ def passing(run: Trajectory, window: Window) -> list[list[Phase]]:
     )
     return [list(own) for _, own in groupby(cut, key=lambda one: one.beat)]
 
-
-# Which stretch of a run does a plot show that needs no more than one cycle?
 
 SEARCHED = 3.1  # oscillations from the end: two whole beats lie in them
 LONGER = 1.02  # so that the curve closes

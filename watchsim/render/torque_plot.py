@@ -1,6 +1,9 @@
 """Which torque acts on the balance over its angle, and what do unlocking and impulse take and give?
 
 plot_torque(run).savefig("torque.pdf")
+
+From the forces at the contacts and the jumps of the velocity; phases.csv has the same energies from the account of the balance
+alone.
 """
 
 from __future__ import annotations
@@ -9,44 +12,22 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
 
 from watchsim.analysis.forces import forces
 from watchsim.analysis.timeline import Beat, Stage, shown_beats
 from watchsim.analysis.timeline import title as phase_title
-from watchsim.mechanism.compile import Compiled, compile_scene
+from watchsim.mechanism.compile import compile_scene
+from watchsim.render import style
 from watchsim.render.palette import FAINT, INK
-from watchsim.render.phase_bands import bands
-from watchsim.render.style import (
-    CURVE,
-    FULL,
-    HAIR,
-    LEAD,
-    NARROW,
-    POINT,
-    SMALL,
-    dress,
-    energy_unit,
-    figure,
-    heading,
-    panel,
-    title,
-)
+from watchsim.render.phase_bands import bands, beat_name
 from watchsim.scene.roles import roles
 from watchsim.simulation.trajectory import Array, Trajectory, frames
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-
-# Which torque do the contacts exert on the balance, and which work do forces and impacts do on it in each phase of a beat?
-#
-# From the forces at the contacts and the jumps of the velocity; the timeline (phases.csv) has the same energies from the books
-# of
-# the balance alone.
 
 WITHIN = 3  # instants in a step
 FINE = 60  # steps of a phase at least
@@ -76,18 +57,18 @@ def pushes(run: Trajectory, beats: Sequence[Beat]) -> list[list[Push]]:
     """Of every phase of some beats but the free oscillation."""
     name = roles(run.scene).oscillator
     assert name is not None
-    compiled = compile_scene(run.scene)
     stages = [[stage for stage in beat.stages if stage.name != "locked"] for beat in beats]
     times = [_instants(run, stage.phase.start, stage.phase.end) for own in stages for stage in own]
     whole = torque_on(run, name, np.concatenate(times))
     curves = zip(times, np.split(whole, np.cumsum([len(own) for own in times])[:-1]), strict=True)
-    return [[_push(run, compiled, name, stage, *next(curves)) for stage in own] for own in stages]
+    inertia = float(compile_scene(run.scene).model.coordinates[run.slices[name].start].mass)
+    return [[_push(run, name, inertia, stage, *next(curves)) for stage in own] for own in stages]
 
 
-def _push(run: Trajectory, compiled: Compiled, name: str, stage: Stage, times: Array, torque: Array) -> Push:
+def _push(run: Trajectory, name: str, inertia: float, stage: Stage, times: Array, torque: Array) -> Push:
     angle = run.positions(times, [run.slices[name].start])[:, 0]
     work = float(np.sum(0.5 * (torque[1:] + torque[:-1]) * np.diff(angle)))
-    struck = _impacts(run, compiled, name, stage)
+    struck = _impacts(run, name, inertia, stage)
     way = 1.0 if angle[-1] >= angle[0] else -1.0
     return Push(stage, angle, torque, work, sum(value for _, value in struck), struck, way)
 
@@ -122,15 +103,14 @@ def torque_on(run: Trajectory, name: str, times: Array) -> Array:
     return total
 
 
-def _impacts(run: Trajectory, compiled: Compiled, name: str, stage: Stage) -> tuple[tuple[float, float], ...]:
+def _impacts(run: Trajectory, name: str, inertia: float, stage: Stage) -> tuple[tuple[float, float], ...]:
     """Angle and work of every jump of the balance's velocity that the timeline counts with this phase."""
     column = run.slices[name].start
     low = np.searchsorted(run.t, stage.phase.start, "right" if stage.name == "run to banking" else "left")
     high = np.searchsorted(run.t, stage.phase.end, "right" if stage.name == "drop" else "left")
     rows = np.arange(max(int(low), 1), int(high) + 1)
-    rows = rows[(rows < len(run.t))]
+    rows = rows[rows < len(run.t)]
     jumps = rows[(run.t[rows] == run.t[rows - 1]) & (rows - 1 >= low) & (rows < high)]
-    inertia = float(compiled.model.coordinates[column].mass)
     return tuple(
         (float(run.q[k, column]), 0.5 * inertia * float(run.u[k, column] ** 2 - run.u[k - 1, column] ** 2))
         for k in jumps.tolist()
@@ -138,21 +118,19 @@ def _impacts(run: Trajectory, compiled: Compiled, name: str, stage: Stage) -> tu
     )
 
 
-# Which torque acts on the balance over its angle, and what do unlocking and impulse take and give?
-
 TOP, LEFT, RIGHT, OVER, TALL, UNDER = 12.0, 12.0, 3.0, 5.0, 48.0, 11.0  # mm
 MANY = 2  # beats, one for each stone
-ROW = LEAD * SMALL * POINT  # mm, of the table
+ROW = style.LEAD * style.SMALL * style.POINT  # mm, of the table
 COLUMNS = (0.0, 0.46, 0.64, 0.82, 1.0)  # of the panel's width: name, and the right sides of the numbers
 HEADS = ("forces", "impacts", "together")
 LEAST = 0.02  # of the panel: an area narrower than this has its energy in the table only
-TOLD = 0.02  # of the largest: fainter energies are in the table only
+SHOWN = 0.02  # of the largest: fainter energies are in the table only
 HIT = 0.02  # of the largest work in the beat: fainter impacts have no mark
 PREFIXES = ((1.0, "N·m"), (1e3, "mN·m"), (1e6, "µN·m"), (1e9, "nN·m"))
 
 
 def plot_torque(
-    run: Trajectory, window: Sequence[float] | None = None, width: float = FULL, beats: list[Beat] | None = None
+    run: Trajectory, window: Sequence[float] | None = None, width: float = style.FULL, beats: list[Beat] | None = None
 ) -> Figure:
     """The torque of all contacts on the balance over its angle, a panel for each of the last two beats of a window.
 
@@ -162,30 +140,25 @@ def plot_torque(
     """
     beats_shown = (beats or shown_beats(run, window, rubbed=False))[-MANY:]
     found = pushes(run, beats_shown)
-    across = len(found) if width >= NARROW else 1
+    across = len(found) if width >= style.NARROW else 1
     rows = -(-len(found) // across)
     table = ROW * (2.5 + max(len(one) for one in found))
     step = OVER + TALL + UNDER + table
-    made = figure(width, TOP + rows * step)
+    made = style.figure(width, TOP + rows * step)
     name = roles(run.scene).oscillator
-    heading(
-        made,
-        run.scene.title,
-        f"Torque on {name}, with its swing; triangles: impacts",
-    )
+    style.heading(made, run.scene.title, f"Torque on {name}, with its swing; triangles: impacts")
     largest = max((float(np.abs(one.torque).max()) for push in found for one in push), default=0.0) or 1.0
     factor, unit = next(((f, u) for f, u in PREFIXES if largest * f >= 1.0), PREFIXES[-1])
     works = [value for push in found for one in push for value in (one.forces, one.impacts, one.stage.energy.to_balance)]
-    joules = energy_unit(max(map(abs, works), default=0.0))
+    joules = style.energy_unit(max(map(abs, works), default=0.0))
     wide = width / across - LEFT - RIGHT
     span = [factor * one.way * value for push in found for one in push for value in (one.torque.min(), one.torque.max())]
     for k, (beat, push) in enumerate(zip(beats_shown, found, strict=True)):
         left, top = (k % across) * (LEFT + wide + RIGHT) + LEFT, TOP + (k // across) * step + OVER
-        axes = panel(made, left, top, wide, TALL)
+        axes = style.panel(made, left, top, wide, TALL)
         _curve(axes, push, factor)
         axes.set_ylim(min(*span, 0.0) - 0.16 * (max(span) - min(span)), max(*span, 0.0) + 0.16 * (max(span) - min(span)))
-        stone = beat.stages[0].pallet
-        title(axes, f"beat {beat.stages[0].beat}{f', {stone} stone' if stone else ''}")
+        style.title(axes, beat_name(beat))
         axes.set_xlabel(f"angle of {name} (°)", labelpad=1.5)
         axes.set_ylabel(f"torque ({unit})", labelpad=1.5)
         _energies(axes, push, factor, joules)
@@ -195,14 +168,14 @@ def plot_torque(
 
 def _curve(axes: Axes, push: list[Push], factor: float) -> None:
     """Areas in the colours of the phases, the curve on top, and marks where impacts hit."""
-    dress(axes)
-    axes.axhline(0.0, color=FAINT, linewidth=HAIR, zorder=2)
+    style.dress(axes)
+    axes.axhline(0.0, color=FAINT, linewidth=style.HAIR, zorder=2)
     most = max((abs(one.stage.energy.to_balance) for one in push), default=0.0)
     for one, (_, colour) in zip(push, bands(one.stage.phase for one in push), strict=True):
         x, y = np.degrees(one.angle), factor * one.way * one.torque
         gid = f"area {phase_title(one.stage)}"
         axes.fill_between(x, y, 0.0, color=colour, linewidth=0.0, zorder=1, gid=gid)
-        axes.plot(x, y, color=INK, linewidth=CURVE, zorder=3, gid=f"torque {phase_title(one.stage)}")
+        axes.plot(x, y, color=INK, linewidth=style.CURVE, zorder=3, gid=f"torque {phase_title(one.stage)}")
         for angle, work in one.struck:
             if abs(work) > HIT * most:
                 mark = "^" if work > 0.0 else "v"
@@ -219,13 +192,19 @@ def _energies(axes: Axes, push: list[Push], factor: float, joules: tuple[float, 
     most = max(abs(one.stage.energy.to_balance) for one in push)
     for one in push:
         x, given = np.degrees(one.angle), one.stage.energy.to_balance
-        if abs(x[-1] - x[0]) < LEAST * (high - low) or abs(given) < TOLD * most:
+        if abs(x[-1] - x[0]) < LEAST * (high - low) or abs(given) < SHOWN * most:
             continue
         up = given >= 0.0
         torque = factor * one.way * one.torque
         edge = float(torque.max() if up else torque.min())
-        text = f"{joules[0] * given:+.1f} {joules[1]}".replace("-", "−")
-        look: dict[str, Any] = {"ha": "center", "va": "bottom" if up else "top", "fontsize": SMALL, "color": INK, "zorder": 5}
+        text = style.minus(f"{joules[0] * given:+.1f} {joules[1]}")
+        look: dict[str, Any] = {
+            "ha": "center",
+            "va": "bottom" if up else "top",
+            "fontsize": style.SMALL,
+            "color": INK,
+            "zorder": 5,
+        }
         place = (0.5 * (x[0] + x[-1]), max(edge, 0.0) if up else min(edge, 0.0))
         axes.annotate(text, place, (0, 1.5 if up else -1.5), textcoords="offset points", **look)
 
@@ -233,21 +212,15 @@ def _energies(axes: Axes, push: list[Push], factor: float, joules: tuple[float, 
 def _table(axes: Axes, push: list[Push], head: tuple[str, float], below: float, row: float) -> None:
     """Under the panel: work of forces and of impacts, phase by phase; heights are shares of the panel's.
 
-    `head`: what is told, and in how many to the joule.
+    `head`: what is shown, and in how many to the joule.
     """
-    from matplotlib.patches import Rectangle
-
     rows: list[tuple[str, ...]] = [(head[0], *HEADS)]
-    rows += [
-        (phase_title(one.stage), *(_told(value, head[1]) for value in (one.forces, one.impacts, one.stage.energy.to_balance)))
-        for one in push
-    ]
-    sums = [
-        sum(values) for values in zip(*((one.forces, one.impacts, one.stage.energy.to_balance) for one in push), strict=True)
-    ]
-    rows.append(("beat", *(_told(value, head[1]) for value in sums)))
+    energies = [(one.forces, one.impacts, one.stage.energy.to_balance) for one in push]
+    for one, values in zip(push, energies, strict=True):
+        rows.append((phase_title(one.stage), *(_shown(value, head[1]) for value in values)))
+    rows.append(("beat", *(_shown(sum(values), head[1]) for values in zip(*energies, strict=True))))
     colours = [None, *(colour for _, colour in bands(one.stage.phase for one in push)), None]
-    swatch = 2.2 / (axes.get_window_extent().width / axes.figure.dpi * 25.4)
+    swatch = 2.2 / style.width_mm(axes)
     for k, (cells, colour) in enumerate(zip(rows, colours, strict=True)):
         y = 1.0 - below - (k + 0.5) * row
         if colour is not None:
@@ -256,15 +229,10 @@ def _table(axes: Axes, push: list[Push], head: tuple[str, float], below: float, 
         weight = "bold" if k in (0, len(rows) - 1) else "normal"
         for i, text in enumerate(cells):
             x = COLUMNS[0] + (1.6 * swatch if colour is not None else 0.0) if i == 0 else COLUMNS[i + 1]
-            look: dict[str, Any] = {
-                "ha": "left" if i == 0 else "right",
-                "va": "center",
-                "fontsize": SMALL,
-                "color": INK,
-                "weight": weight,
-            }
-            axes.text(x, y, text, transform=axes.transAxes, **look)
+            side = "left" if i == 0 else "right"
+            look: dict[str, Any] = {"va": "center", "fontsize": style.SMALL, "color": INK, "weight": weight}
+            axes.text(x, y, text, transform=axes.transAxes, ha=side, **look)
 
 
-def _told(value: float, factor: float) -> str:
-    return f"{round(factor * value, 2) + 0.0:.2f}".replace("-", "−")
+def _shown(value: float, factor: float) -> str:
+    return style.minus(f"{round(factor * value, 2) + 0.0:.2f}")

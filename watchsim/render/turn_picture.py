@@ -7,9 +7,11 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch
 from matplotlib.transforms import Affine2D
 
@@ -18,11 +20,6 @@ from watchsim.escapement.turn import Happening, Turn, happenings, verdict
 from watchsim.render.palette import BACKGROUND, CONTACT, FAINT, GRID, INK, LIGHT, dark, looks
 from watchsim.render.parts import Part, pose_matrix, working
 from watchsim.storage.write import write_file
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
 
 VIEWS, ACROSS = 8, 4
 SIZE, DPI = (16.0, 12.0), 110
@@ -39,9 +36,6 @@ def turn_picture(found: Turn, path: Path, on_dark: bool = False) -> None:
 
 
 def _figure(found: Turn) -> Figure:
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
     story = happenings(found)
     chosen = _moments(found, story)
     figure = Figure(figsize=SIZE, facecolor=BACKGROUND)

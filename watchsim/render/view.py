@@ -14,20 +14,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.geometry.hairspring import Coil
-from watchsim.geometry.loops import Loop
 from watchsim.render.parts import loops_of, outline, pose_matrix
 from watchsim.render.rows import taken, thinned
 from watchsim.scene.forces import LineSpring
 from watchsim.scene.scene import Body, Scene
 from watchsim.scene.trains import at_start, is_still
-from watchsim.simulation.trajectory import Trajectory
+from watchsim.simulation.trajectory import Array, Trajectory
 from watchsim.simulation.trajectory import frames as body_frames
 
-# Where are the bodies, over any stretch of time?
-#
 # Everything is asked of the trajectory's interpolation, so a picture may be drawn at any time and in any order.
 
-Array = NDArray[np.float64]
+Pixels = NDArray[np.uint8]
 Window = tuple[float, float]
 
 SWEEP_STEP = math.radians(3.0)  # a chord this long leaves its circle by 0.03 % of the radius
@@ -70,14 +67,9 @@ def stretch(run: Trajectory, window: Sequence[float] | None, unbroken: bool = Fa
     raise ValueError(f"window from {start:.9g} s to {stop:.9g} s: only {kept} was recorded")
 
 
-def moving(run: Trajectory) -> tuple[Body, ...]:
-    """The bodies that have coordinates, in the scene's order."""
-    return tuple(body for body in run.scene.bodies if body.name in run.slices)
-
-
 def choose(run: Trajectory, names: Sequence[str] | None) -> tuple[Body, ...]:
     """The moving bodies of those names (default all); ValueError naming the choices where one is unknown or fixed."""
-    bodies = {body.name: body for body in moving(run)}
+    bodies = {body.name: body for body in run.scene.bodies if body.name in run.slices}
     if names is None:
         return tuple(bodies.values())
     asked = (names,) if isinstance(names, str) else tuple(names)
@@ -92,6 +84,11 @@ def poses(run: Trajectory, times: Array) -> dict[str, Array]:
     """For every body (len(times), 3): x, y (m) and angle (rad) of its frame."""
     q, _ = run.sample(times)
     return body_frames(run.scene, run.slices, q)
+
+
+def seen(points: Array, matrix: Array) -> Array:
+    """Points (n, 2) through a 3 × 3 map, such as from metres to pixels."""
+    return points @ matrix[:2, :2].T + matrix[:2, 2]
 
 
 def placed(points: Array, frames: Array) -> Array:
@@ -155,9 +152,7 @@ def dense(run: Trajectory, window: Window, least: int = 2000, accelerations: boo
     return t, q, u, a
 
 
-# Where does the hairspring of a balance lie?
-#
-# It is drawn from the shape that a scene gives its spring: the collet turns with the balance, the stud stays where it is. It
+# A hairspring is drawn from the shape that a scene gives it: the collet turns with the balance, the stud stays where it is. It
 # takes no part in the motion.
 
 STUD = 0.045  # of the stud's radius: half a side of the block that holds the outer end
@@ -194,7 +189,7 @@ class Hairspring:
     def _placed(self, points: Array, frames: dict[str, Array]) -> Array:
         x, y, _ = frames[self.body]
         matrix = pose_matrix(np.array([x, y, self._base(frames)]))
-        return points @ matrix[:2, :2].T + matrix[:2, 2]
+        return seen(points, matrix)
 
 
 def hairsprings(scene: Scene) -> tuple[Hairspring, ...]:
@@ -213,10 +208,8 @@ def room_for(scene: Scene, body: str) -> Array:
     return reach * np.column_stack((np.cos(angles), np.sin(angles))) if reach else np.empty((0, 2))
 
 
-# Where does a spring between two points lie?
-#
-# It is drawn as a helical spring is seen from the side: a straight eye at either end, and between them a zigzag of always the
-# same width, which a stretched spring draws out. It takes no part in the motion.
+# A spring between two points is drawn as a helical spring is seen from the side: a straight eye at either end, and between them
+# a zigzag of always the same width, which a stretched spring draws out. It takes no part in the motion.
 
 COILS = 10
 WIDTH = 0.05  # of its length: half the width of the zigzag
@@ -272,17 +265,10 @@ def _of(spring: LineSpring, frames: dict[str, Array]) -> Zigzag:
     return Zigzag(spring.between, (first, second), WIDTH * max(spring.length, apart))
 
 
-def fixed_ends(scene: Scene) -> Array:
-    """(n, 2) points of the movement (m) that springs are hooked to."""
-    return np.array([s.points[k] for s in scene.line_springs for k in (0, 1) if s.between[k] is None]).reshape(-1, 2)
-
-
-def hooks(scene: Scene, body: str) -> Array:
-    """(n, 2) points in the body's frame (m) that springs are hooked to."""
+def hooks(scene: Scene, body: str | None) -> Array:
+    """(n, 2) points in the frame of a body, or of the movement (None), that springs are hooked to, m."""
     return np.array([s.points[k] for s in scene.line_springs for k in (0, 1) if s.between[k] == body]).reshape(-1, 2)
 
-
-# Which part of the plane does a picture show, and which way up?
 
 MARGIN = 0.05  # of the frame, on every side
 QUARTER_GAIN = 1.25  # a quarter turn must enlarge the picture by this
@@ -301,6 +287,10 @@ class Frame:
     bottom: float
     width: float
     height: float
+
+    def near(self, x: float, y: float, reach: float) -> bool:
+        """Does the point lie in the frame, or closer to it than `reach` both ways?"""
+        return -reach < x - self.left < self.width + reach and -reach < y - self.bottom < self.height + reach
 
 
 @dataclass(frozen=True)
@@ -335,21 +325,21 @@ def view(run: Trajectory, window: Window, frame: Frame, zoom: Sequence[str] | No
     angle = _upright(run, points, frame, traveller) if turn is None else turn
     if traveller is not None:
         return _following(traveller, frames[traveller.name], frame, angle)
-    return _fitted(points, frame, angle)
+    return fitted(points, frame, angle)
 
 
 def room_of(run: Trajectory, window: Window, zoom: Sequence[str] | None) -> tuple[Array, dict[str, Array], Body | None]:
     """(n, 2) points that bound all that is to be seen over a window, the poses they come from, and a body to follow, if any."""
     bodies = _shown(run, zoom)
     frames = {body.name: swept(run, body, window) for body in bodies}
-    if zoom is not None:
-        # What is asked for is seen for what it does: a rim drawn beside a roller would make that small.
-        points = np.concatenate([_room(body.loops or loops_of(body), body, frames[body.name]) for body in bodies])
-    else:
-        points = np.concatenate([_room(loops_of(body), body, frames[body.name]) for body in bodies])
+    # What is asked for is seen for what it does: a rim drawn beside a roller would make that small.
+    loops = [(body.loops if zoom is not None else ()) or loops_of(body) for body in bodies]
+    outlines = [outline(own, COARSE * size_of(body)) for own, body in zip(loops, bodies, strict=True)]
+    points = np.concatenate([placed(own, frames[body.name]).reshape(-1, 2) for own, body in zip(outlines, bodies, strict=True)])
+    if zoom is None:
         coils = [placed(room_for(run.scene, body.name), frames[body.name][:1]).reshape(-1, 2) for body in bodies]
         hooked = [placed(hooks(run.scene, body.name), frames[body.name]).reshape(-1, 2) for body in bodies]
-        points = np.concatenate((points, *coils, *hooked, fixed_ends(run.scene)))
+        points = np.concatenate((points, *coils, *hooked, hooks(run.scene, None)))
         points = np.concatenate((points, _ground_below(run, points)))
     return points, frames, _traveller(bodies, frames)
 
@@ -405,10 +395,6 @@ def size_of(body: Body) -> float:
     return max(float(np.ptp(outline(loops_of(body), COARSE * reach), axis=0).max()), 1e-12)
 
 
-def _room(loops: tuple[Loop, ...], body: Body, frames: Array) -> Array:
-    return placed(outline(loops, COARSE * size_of(body)), frames).reshape(-1, 2)
-
-
 def _traveller(bodies: list[Body], frames: dict[str, Array]) -> Body | None:
     """The body that goes furthest, where that is far more than its size."""
     movers = [body for body in bodies if body.motion in ("free", "slide")]
@@ -423,18 +409,24 @@ def _upright(run: Trajectory, points: Array, frame: Frame, traveller: Body | Non
         return -0.5 * math.pi - math.atan2(gy, gx)
     if traveller is not None:
         return 0.0
-    upright, quarter = _fitted(points, frame, 0.0).scale, _fitted(points, frame, -0.5 * math.pi).scale
+    upright, quarter = fitted(points, frame, 0.0).scale, fitted(points, frame, -0.5 * math.pi).scale
     return -0.5 * math.pi if quarter > QUARTER_GAIN * upright else 0.0
 
 
-def _fitted(points: Array, frame: Frame, turn: float) -> View:
+def fitted(points: Array, frame: Frame, turn: float, margin: float = MARGIN) -> View:
+    """The view that fits points (n, 2), m, into a frame."""
+    low, high = bounds(points, turn)
+    width, height = np.maximum(high - low, 1e-12)
+    scale = (1.0 - 2.0 * margin) * min(frame.width / width, frame.height / height)
+    (x, y), c, s = 0.5 * (low + high), math.cos(turn), math.sin(turn)
+    return View((c * x + s * y, -s * x + c * y), float(scale), turn, _middle(frame))
+
+
+def bounds(points: Array, turn: float) -> tuple[Array, Array]:
+    """Least and largest x and y (m) of points (n, 2) in a picture turned by so much."""
     c, s = math.cos(turn), math.sin(turn)
     seen = points @ np.array([[c, s], [-s, c]])
-    low, high = seen.min(axis=0), seen.max(axis=0)
-    width, height = np.maximum(high - low, 1e-12)
-    scale = (1.0 - 2.0 * MARGIN) * min(frame.width / width, frame.height / height)
-    x, y = 0.5 * (low + high)
-    return View((c * x + s * y, -s * x + c * y), float(scale), turn, _middle(frame))
+    return seen.min(axis=0), seen.max(axis=0)
 
 
 def _following(body: Body, frames: Array, frame: Frame, turn: float) -> View:

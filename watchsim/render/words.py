@@ -1,4 +1,4 @@
-"""Where do the words of a frame stand?
+"""Where do the words of a frame stand, and how are those written that change?
 
 A band at the top for title and time, one at the bottom for what every body reads and the scale; the mechanism has the
 rest. What never changes becomes artists of the figure; what changes is written by `Layout.write`.
@@ -17,21 +17,17 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import FancyBboxPatch
 from matplotlib.text import Text
 from matplotlib.transforms import IdentityTransform
-from numpy.typing import NDArray
 
 from watchsim.render.marks import Clock, clock, goes_round, reading, scale_bar, speed_text, turn_text
 from watchsim.render.palette import Finish, Style, looks
-from watchsim.render.view import Frame, Window, sampled
+from watchsim.render.view import Frame, Pixels, Window, sampled
 from watchsim.scene.roles import roles
 from watchsim.scene.scene import Body
-from watchsim.simulation.trajectory import Trajectory
+from watchsim.simulation.trajectory import Array, Trajectory
 
-# How are changing numbers written a hundred times a second?
-#
 # Laying out text costs a millisecond; every character is drawn once and copied afterwards. Digits have one width, so that
 # numbers do not tremble.
 
-Pixels = NDArray[np.uint8]
 
 CHARACTERS = "0123456789.-−+ °msµ"
 DPI = 72.0  # one point is one pixel
@@ -74,8 +70,6 @@ class Lettering:
             x = stop
 
 
-# How are words written that change now and then, such as the name of a phase?
-#
 # A text is laid out when it first appears and copied from then on.
 
 MOST = 2000  # texts kept
@@ -131,10 +125,6 @@ class Words:
         canvas.draw()
         return np.array(canvas.buffer_rgba())[:, :width].copy()
 
-
-# Where do the words of a frame stand?
-
-Array = NDArray[np.float64]
 
 TITLE, TIME, SMALL = 19.0, 24.0, 15.0  # text sizes in pixels at 1280 × 720
 PAD, GAP = 24.0, 30.0

@@ -23,8 +23,7 @@ from watchsim.results.tables import json_text, write_events
 from watchsim.scene.keys import DESIGN, SCHEMA
 from watchsim.scene.load import SCENE_FILES, load
 from watchsim.scene.scene import Body, Scene
-from watchsim.scene.values import digest, file_digest, parsed
-from watchsim.scene.write_toml import toml_text
+from watchsim.scene.toml import digest, file_digest, parsed, toml_text
 from watchsim.simulation.trajectory import Trajectory
 from watchsim.storage.destination import give_name, nameless
 from watchsim.storage.write import PREFIX, real, write_folder

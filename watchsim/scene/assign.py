@@ -1,145 +1,143 @@
-"""How is the value at one dotted path of a scene's mapping changed?"""
+"""How is the value at one dotted path of a scene's mapping changed?
+
+The path is followed through the mapping and through the table of keys at once.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from numbers import Real
 from typing import Any
 
 from watchsim.scene.errors import Faults
-from watchsim.scene.keys import LISTED, SECTIONS, TABLES, WITHIN, key_at, nearest, siblings
-from watchsim.scene.read_bodies import motion_of
+from watchsim.scene.keys import (
+    DRIVEN,
+    LAYERS,
+    LISTED,
+    NAMED_TABLES,
+    SECTIONS,
+    TABLE,
+    TABLES,
+    TABLES_LISTED,
+    TRAIN,
+    Key,
+    entered,
+    key_at,
+    nearest,
+    steps_into,
+)
+from watchsim.scene.scene import MOTIONS
 from watchsim.scene.values import shown
 from watchsim.units import NUMBER, Dimension
 
-# Keys that say the same thing: setting one takes the others away.
-INSTEAD_OF = {
-    "frequency": ("stiffness", "leaf"),
-    "stiffness": ("frequency", "leaf"),
-    "leaf": ("frequency", "stiffness"),
-    "rest": ("preload",),
-    "preload": ("rest",),
-    "q_factor": ("viscous",),
-    "viscous": ("q_factor",),
-    "value": ("table", "over", "period", "ratio", "efficiency", "run_down", "train"),
-}
-
-Entered = tuple[dict[str, Any] | None, tuple[str, ...]]  # a table of the mapping, and the path within it
-
 
 def assign(mapping: dict[str, Any], key: str, value: object, faults: Faults) -> None:
+    """Put the value there, into tables that are made where they are missing; what says the same thing beside it goes."""
     path = tuple(key.split("."))
     described = key_at(path)
     if described is None or path[0] == "lock":
         faults.add(key, f"unknown key. {_advice(path)}", shown(value))
         return
-    holder, rest = _enter(mapping, path, faults)
-    if not isinstance(holder, dict):
+    holder, rest = _holder(mapping, path, faults)
+    if holder is None:
         return
-    dimension = described.dimension_for(motion_of(mapping.get("bodies", {}), _body_name(path, holder)))
-    in_si = with_unit(value, dimension)
+    name = path[1] if path[0] == "bodies" else holder.get("body")
+    dimension = described.dimension_for(motion_of(mapping.get("bodies", {}), name))
+    value = with_unit(value, dimension)
     if len(rest) == 1:
-        for other in INSTEAD_OF.get(rest[0], ()) if path[0] in LISTED else ():
+        for other in described.instead_of if path[0] in LISTED else ():
             holder.pop(other, None)
-        holder[rest[0]] = in_si
+        holder[rest[0]] = value
+        return
+    if described.inner:
+        _put_whole(described, holder, path, rest[1:], value, faults)
+        return
+    zero = with_unit(0.0, dimension)  # a pair that is not there yet begins as zeros
+    element: object = holder.setdefault(rest[0], [zero, zero])
+    for step in rest[1:-1]:
+        element = _element(element, step)
+    if _element(element, rest[-1]) is None or not isinstance(element, list):
+        faults.add(key, f"there is no element {'.'.join(rest[1:])} in it", shown(holder[rest[0]]))
     else:
-        _assign_element(holder, rest, in_si, (key, dimension, faults))
+        element[int(rest[-1])] = value
 
 
-def _enter(mapping: dict[str, Any], path: tuple[str, ...], faults: Faults) -> Entered:
+def _put_whole(
+    key: Key, holder: dict[str, Any], path: tuple[str, ...], steps: tuple[str, ...], value: object, faults: Faults
+) -> None:
+    """A whole table in place of the one that the last steps of the path lead to."""
+    name = path[-1 - len(steps)]
+    if key.form == LAYERS and len(steps) == 1:
+        layers = holder.setdefault(name, {})
+        if isinstance(layers, dict):
+            layers[steps[0]] = value
+        return
+    _, words = _inside(key, holder, path[: len(path) - len(steps)], steps)
+    if words:
+        faults.add(".".join(path), words)
+        return
+    elements = holder[name] if key.form == TABLES_LISTED else holder[name][steps[0]]
+    if isinstance(elements, list):
+        elements[int(steps[-1])] = value
+
+
+def _holder(mapping: dict[str, Any], path: tuple[str, ...], faults: Faults) -> tuple[dict[str, Any] | None, tuple[str, ...]]:
     """The table that holds the key, and the rest of the path from the key on.
 
     None after a fault, and where something else stands in the table's place: that is refused when the scene is read.
     """
-    section, key = path[0], ".".join(path)
-    if section in TABLES:
-        return mapping.setdefault(section, {}), path[1:]
-    if section in LISTED:
-        return _enter_element(section, mapping.get(section, []), path[1:], key, faults)
-    named = mapping.get(section, {})
-    if not isinstance(named, dict):
-        return None, ()
-    if path[1] not in named:
-        faults.add(key, f'there is no "{path[1]}" in {section}. {nearest(path[1], named)}')
-        return None, ()
-    holder, rest = named[path[1]], path[2:]
-    if isinstance(holder, dict) and rest[0] == "solids" and len(rest) > 1:
-        return _enter_element(f"bodies.{path[1]}.solids", holder.get("solids", []), rest[1:], key, faults)
-    return _enter_within(section, holder, rest, key, faults)
+    keys, holder, rest = SECTIONS, mapping, path
+    while True:
+        key = keys[rest[0]]
+        steps = steps_into(key, rest[1:])
+        if not key.inner or len(rest) <= 1 + steps:
+            return holder, rest
+        found, words = _inside(key, holder, path[: len(path) - len(rest) + 1], rest[1 : 1 + steps])
+        if words:
+            faults.add(".".join(path), words)
+        if not isinstance(found, dict):
+            return None, ()
+        keys, holder, rest = key.inner, found, rest[1 + steps :]
 
 
-def _enter_element(name: str, elements: object, rest: tuple[str, ...], key: str, faults: Faults) -> Entered:
-    """The table for one element of a list of tables."""
-    if not isinstance(elements, list):
-        return None, ()
-    if not rest[0].isdigit() or int(rest[0]) >= len(elements):
-        faults.add(key, f"{name} has no entry {rest[0]}: there are {len(elements)}, counted from 0")
-        return None, ()
-    return _enter_within(name, elements[int(rest[0])], rest[1:], key, faults)
+def _inside(key: Key, holder: dict[str, Any], path: tuple[str, ...], steps: tuple[str, ...]) -> tuple[object, str]:
+    """The table that the steps lead to from the key at `path` of `holder`, or what is said where there is none."""
+    name = path[-1]
+    if key.form == TABLE:
+        return holder.setdefault(name, {}), ""
+    if key.form == LAYERS:  # a layer that has none yet gets an empty table
+        layers = holder.setdefault(name, {})
+        entry = layers.setdefault(steps[0], {}) if isinstance(layers, dict) else None
+        many = f": it has {len(entry)} entries, counted from 0" if isinstance(entry, list) else ""
+        entry = _element(entry, steps[1]) if len(steps) > 1 else entry
+        return entry, "" if isinstance(entry, dict) else f"there is no such table under adjust{many}"
+    if key.form == NAMED_TABLES:
+        named = holder.get(name, {})
+        if not isinstance(named, dict) or steps[0] in named:
+            return named[steps[0]] if isinstance(named, dict) else None, ""
+        return None, f'there is no "{steps[0]}" in {name}. {nearest(steps[0], named)}'
+    elements = holder.get(name, [])
+    many = str(len(elements)) if isinstance(elements, list) else "0"
+    if key.inner is TRAIN and _element(elements, steps[0]) is None:
+        return None, f"the train has no wheel {steps[0]}: there are {many}, counted from 0"
+    if isinstance(elements, list) and _element(elements, steps[0]) is None:
+        return None, f"{'.'.join(path)} has no entry {steps[0]}: there are {many}, counted from 0"
+    return _element(elements, steps[0]), ""
 
 
-def _enter_within(section: str, holder: object, rest: tuple[str, ...], key: str, faults: Faults) -> Entered:
-    """The table within an entry where the path goes on into one."""
-    if not isinstance(holder, dict):
-        return None, ()
-    if rest[0] == "adjust" and len(rest) > 1:
-        return _enter_adjust(holder, rest, key, faults)
-    if rest[0] == "train" and len(rest) > 2:
-        return _enter_train(holder, rest, key, faults)
-    if (section, rest[0]) not in WITHIN or len(rest) == 1:
-        return holder, rest
-    return holder.setdefault(rest[0], {}), rest[1:]
+def _element(elements: object, step: str) -> object:
+    """The element of that number; None where there is none."""
+    inside = isinstance(elements, list) and step.isdigit() and int(step) < len(elements)
+    return elements[int(step)] if isinstance(elements, list) and inside else None
 
 
-def _enter_train(holder: dict[str, Any], rest: tuple[str, ...], key: str, faults: Faults) -> Entered:
-    """The table for one wheel of a train."""
-    wheels = holder.get("train")
-    inside = isinstance(wheels, list) and rest[1].isdigit() and int(rest[1]) < len(wheels)
-    if isinstance(wheels, list) and inside:
-        return wheels[int(rest[1])], rest[2:]
-    many = len(wheels) if isinstance(wheels, list) else 0
-    faults.add(key, f"the train has no wheel {rest[1]}: there are {many}, counted from 0")
-    return None, ()
-
-
-def _enter_adjust(holder: dict[str, Any], rest: tuple[str, ...], key: str, faults: Faults) -> Entered:
-    """The table for one layer of a drawing, or for one outline of it; a layer that has none yet gets an empty one."""
-    layers = holder.setdefault("adjust", {})
-    if len(rest) == 2 and isinstance(layers, dict):
-        return layers, rest[1:]
-    entry = layers.setdefault(rest[1], {}) if isinstance(layers, dict) else None
-    after = rest[2:] or ("",)
-    many = f": it has {len(entry)} entries, counted from 0" if isinstance(entry, list) else ""
-    if after[0].isdigit() and len(after) > 1:
-        inside = isinstance(entry, list) and int(after[0]) < len(entry)
-        entry, after = (entry[int(after[0])] if isinstance(entry, list) and inside else None), after[1:]
-    if isinstance(entry, dict):
-        return entry, after
-    faults.add(key, f"there is no such table under adjust{many}")
-    return None, ()
-
-
-def _assign_element(
-    holder: dict[str, Any], rest: tuple[str, ...], value: object, about: tuple[str, Dimension | None, Faults]
-) -> None:
-    """Sets one element of a list such as position.1; a pair that is not there yet begins as zeros."""
-    key, dimension, faults = about
-    zero = with_unit(0.0, dimension)
-    element = holder.setdefault(rest[0], [zero, zero])
-    for step in rest[1:-1]:
-        element = _step(element, step)
-    if not isinstance(element, list) or not rest[-1].isdigit() or int(rest[-1]) >= len(element):
-        faults.add(key, f"there is no element {'.'.join(rest[1:])} in it", shown(holder[rest[0]]))
-        return
-    element[int(rest[-1])] = value
-
-
-def _step(element: object, step: str) -> object:
-    inside = isinstance(element, list) and step.isdigit() and int(step) < len(element)
-    return element[int(step)] if isinstance(element, list) and inside else None
-
-
-def _body_name(path: tuple[str, ...], holder: dict[str, Any]) -> object:
-    return path[1] if path[0] == "bodies" else holder.get("body")
+def motion_of(bodies: object, name: object) -> str:
+    """The motion a body asks for, "pivot" where it says nothing readable."""
+    entry = bodies.get(name) if isinstance(bodies, Mapping) and isinstance(name, str) else None
+    motion = entry.get("motion", "pivot") if isinstance(entry, Mapping) else "pivot"
+    if motion == DRIVEN:
+        return "slide" if isinstance(entry, Mapping) and "axis" in entry else "pivot"
+    return motion if motion in MOTIONS else "pivot"
 
 
 def with_unit(value: object, dimension: Dimension | None) -> object:
@@ -154,23 +152,21 @@ def with_unit(value: object, dimension: Dimension | None) -> object:
 
 
 def _advice(path: tuple[str, ...]) -> str:
-    if path[0] not in SECTIONS:
-        home = next((name for name, keys in TABLES.items() if path[0] in keys), None)
-        return f'Did you mean "{home}.{path[0]}"?' if home else nearest(path[0], SECTIONS)
-    if path[0] == "lock":
+    """What to write instead of a path that leads to no key."""
+    section = path[0]
+    if section not in SECTIONS:
+        home = next((name for name, keys in TABLES.items() if section in keys), None)
+        return f'Did you mean "{home}.{section}"?' if home else nearest(section, SECTIONS)
+    if section == "lock":
         return "watchsim writes this table; it cannot be changed."
-    if path[0] == "design":
+    if section == "design":
         return "This scene has no [design]: its bodies, springs, torques and contacts are written out. Change a key of these."
-    depth = 1 if path[0] in TABLES else 2
-    if path[2:3] in (("solids",), ("adjust",)) and len(path) > 4:
-        depth = 5 if path[2] == "adjust" and path[4].isdigit() and len(path) > 5 else 4
-    if (path[0], *path[2:3]) in WITHIN and len(path) > 3:
-        depth = 3
-    if len(path) <= depth:
-        if path[0] == "expect":
-            what = ".".join((*path, "amplitude")[:2])
-            return f"Write {what}.value and {what}.tolerance, one by one."
-        if path[0] in LISTED:
-            return f"Write {path[0]}.NUMBER.KEY, the number counted from 0."
-        return "Write bodies.NAME.KEY, with the name of a body." if path[0] == "bodies" else nearest("", siblings(path))
-    return nearest(path[depth], siblings(path))
+    _, keys, at = entered(path)
+    if at:
+        return nearest(path[at], keys)
+    if section == "expect":
+        what = ".".join((*path, "amplitude")[:2])
+        return f"Write {what}.value and {what}.tolerance, one by one."
+    if section in LISTED:
+        return f"Write {section}.NUMBER.KEY, the number counted from 0."
+    return "Write bodies.NAME.KEY, with the name of a body." if section == "bodies" else nearest("", keys)

@@ -16,12 +16,13 @@ from typing import Any
 from watchsim import units
 from watchsim.construction import registry
 from watchsim.construction.design import Design, Dimension
-from watchsim.scene.assign import INSTEAD_OF, assign
+from watchsim.scene.assign import assign
 from watchsim.scene.errors import Fault, Faults, SceneError
-from watchsim.scene.keys import DESIGN, LISTED, NAMED, SHAPES, TABLES, nearest
+from watchsim.scene.keys import DESIGN, LISTED, NAMED, SHAPES, TABLES, Keys, nearest
 from watchsim.scene.outlines import Made
 from watchsim.scene.scene import Written
-from watchsim.scene.values import parsed, shown
+from watchsim.scene.toml import parsed
+from watchsim.scene.values import shown
 from watchsim.units import UnitError
 
 # What does a scene say that is written over another one?
@@ -29,7 +30,6 @@ from watchsim.units import UnitError
 # Tables are merged key by key, bodies by name. Springs and damping are the same entry where they name the same body, torques as
 # well, contacts where they are between the same two; what has no counterpart is added.
 
-INSTEAD = {**INSTEAD_OF, "table": ("value",)}
 OUTLINE = ("drawing", "layers", "draw", *SHAPES)
 
 
@@ -44,7 +44,7 @@ def merged(base: dict[str, Any], over: dict[str, Any]) -> dict[str, Any]:
             for name, entry in value.items():
                 ours[name] = _over(ours.get(name), entry)
         elif section in LISTED and isinstance(ours, list) and isinstance(value, list):
-            _over_entries(ours, value)
+            _over_entries(ours, value, LISTED[section])
         else:
             out[section] = value
     return out
@@ -59,7 +59,7 @@ def _over(ours: object, entry: object) -> object:
     return {**{key: value for key, value in ours.items() if key not in dropped}, **entry}
 
 
-def _over_entries(ours: list[Any], entries: list[Any]) -> None:
+def _over_entries(ours: list[Any], entries: list[Any], keys: Keys) -> None:
     free = list(range(len(ours)))
     for entry in entries:
         at = next((i for i in free if _identity(entry) is not None and _identity(entry) == _identity(ours[i])), None)
@@ -68,7 +68,7 @@ def _over_entries(ours: list[Any], entries: list[Any]) -> None:
             continue
         free.remove(at)
         for key in entry:
-            for other in INSTEAD.get(key, ()):
+            for other in keys[key].instead_of if key in keys else ():
                 ours[at].pop(other, None)
         ours[at].update(entry)
 
@@ -173,14 +173,17 @@ def with_design(written: Written, faults: Faults) -> tuple[dict[str, Any], Made]
 
 
 def designed(of: object, faults: Faults | None = None) -> Design:
-    """The design of that name; SceneError where there is none."""
-    if isinstance(of, str) and of in registry.NAMES:
-        return registry.design(of)
-    all_known = f"Known: {', '.join(registry.NAMES)}"
-    if of is None:
+    """The design of that name; SceneError where there is none, or where that of another package does not load."""
+    all_known = f"Known: {', '.join(registry.names())}"
+    if isinstance(of, str) and of in registry.names():
+        try:
+            return registry.design(of)
+        except registry.BrokenDesign as error:
+            said = str(error)
+    elif of is None:
         said = f"missing. {all_known}"
     else:
-        hint = nearest(str(of), registry.NAMES)
+        hint = nearest(str(of), registry.names())
         said = f"there is no such design. {hint if hint.startswith('Did') else all_known}"
     if faults is None:
         raise SceneError([Fault(str(of), said, place="design")])

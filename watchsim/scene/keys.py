@@ -1,168 +1,428 @@
-"""Which keys may a scene file hold?"""
+"""Which keys may a scene file hold, and what may stand behind each?
+
+One table says it for all: where a key belongs, what it holds and in which unit, its default, the range of a number, the motions
+for which it is, and one line for people. The readers read by it (`watchsim.scene.values`), unknown keys are judged by it,
+`--set` finds its way by it (`watchsim.scene.assign`), and docs/reference/keys.md is made from it. What relates several keys to
+each other stays with the readers.
+"""
 
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable
-from dataclasses import dataclass
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 
 from watchsim import units
+from watchsim.model import TANGENTIAL_CODE
+from watchsim.scene.scene import MOTIONS, PRESSURE_ANGLE
+from watchsim.tolerances import COARSEST_TOLERANCE, FINEST_TOLERANCE
 from watchsim.units import Dimension
 
 SCHEMA = 1
 ALIKE = 0.7  # share of letters two words have in common; "bodys" is "bodies", "nonsense" is not "scene"
+SMALLEST = 1e-100  # SI: products and powers of what is read must stay numbers
+TOO_SMALL = "is too small to compute with"
+DRIVEN = "driven"
+USUAL_TOLERANCE = 1e-9
+MOST_COPIES = 1000  # of one layer: each is weighed, drawn and looked at
+FEWEST_TURNS, MOST_TURNS = 1.0, 100.0  # that a picture can show
+LEAST_RATIO = 1e-6  # nearer to 0 it is a slip
+TEXT, TEXTS, FLAG, PAIR, POINTS, VALUE = "text", "list of texts", "true or false", "two values", "list of points", "value"
+TABLE, NAMED_TABLES, TABLES_LISTED, LAYERS = "table", "tables by name", "list of tables", "tables by layer"
+
+
+@dataclass(frozen=True, slots=True)
+class Limit:
+    """A number lies from `low` to `high` (SI), without the end that is `open`, or `message` is said.
+
+    With `zero` it may be 0, with `whole` it has no fraction, and it is no nearer to 0 than `apart`.
+    """
+
+    low: float
+    high: float
+    message: str
+    open: str = ""  # "low", "high"
+    zero: bool = False
+    whole: bool = False
+    apart: float = 0.0
+
+    def holds(self, value: float) -> bool:
+        if self.zero and value == 0.0:
+            return True
+        inside = self.low < value if self.open == "low" else self.low <= value
+        inside = inside and (value < self.high if self.open == "high" else value <= self.high)
+        return inside and abs(value) >= self.apart and not (self.whole and value != round(value))
 
 
 @dataclass(frozen=True, slots=True)
 class Key:
-    """What stands behind a key: numbers of a `dimension` (`linear` where the body slides or is free; either where it is not
-    known what the body does, motion ""), or none."""
+    """What stands behind a key.
+
+    dimension, linear  of its numbers; `linear` where the body slides or is free, either where it is not known what the body
+                       does (motion ""); None for what holds no number
+    doc                what it means, one line of Markdown
+    form               what holds the numbers or texts; of a key with `inner` keys how these are reached
+    default            SI, of a number that is left out; `absent` says in words what a missing key means
+    limits             of a number, the first that does not hold is reported
+    choices            of a text
+    motions            of a body; elsewhere the key is a fault. `beside` is added to its message
+    required           its table makes no sense without
+    instead_of         the keys of the same table that say the same thing: giving this one replaces them
+    """
 
     dimension: Dimension | None = None
     linear: Dimension | None = None
+    doc: str = ""
+    form: str = VALUE
+    default: float = 0.0
+    absent: str = ""
+    limits: tuple[Limit, ...] = ()
+    choices: tuple[str, ...] = ()
+    motions: tuple[str, ...] = ()
+    beside: str = ""
+    required: bool = False
+    instead_of: tuple[str, ...] = ()
+    inner: Mapping[str, Key] = field(default_factory=dict)
 
     def dimension_for(self, motion: str) -> Dimension | None:
         if self.linear and self.dimension and not motion:
-            return _either(self.dimension, self.linear)
+            one, other = self.dimension, self.linear
+            return Dimension(f"{one.name} or {other.name}", one.powers + other.powers, one.si, one.usual)
         return self.linear if self.linear and motion in ("slide", "free") else self.dimension
 
 
-def _either(one: Dimension, other: Dimension) -> Dimension:
-    return Dimension(f"{one.name} or {other.name}", one.powers + other.powers, one.si, one.usual)
+Keys = Mapping[str, Key]
 
 
-Keys = dict[str, Key]
-PLAIN = Key()
-NUMBER = Key(units.NUMBER)
-LENGTH = Key(units.LENGTH)
-ANGLE = Key(units.ANGLE)
+def _above_zero(why: str) -> tuple[Limit, ...]:
+    return (
+        Limit(0.0, math.inf, f"must be above zero: {why}" if why else "must be above zero", "low"),
+        Limit(SMALLEST, math.inf, TOO_SMALL),
+    )
+
+
+def _not_negative(message: str = "must not be negative") -> tuple[Limit, ...]:
+    return (Limit(0.0, math.inf, message),)
+
+
+def _text(doc: str, **more: object) -> Key:
+    return Key(doc=doc, form=TEXT, **more)  # type: ignore[arg-type]
+
+
+def _number(doc: str, **more: object) -> Key:
+    return Key(units.NUMBER, doc=doc, **more)  # type: ignore[arg-type]
+
+
+def _length(doc: str, **more: object) -> Key:
+    return Key(units.LENGTH, doc=doc, **more)  # type: ignore[arg-type]
+
+
+def _angle(doc: str, **more: object) -> Key:
+    return Key(units.ANGLE, doc=doc, **more)  # type: ignore[arg-type]
+
+
+_SIZE = SMALLEST, math.inf, TOO_SMALL
+_WEIGHT = (*_not_negative(), Limit(*_SIZE, zero=True))
+_REBOUND = (Limit(0.0, 1.0, "must lie between 0 (no rebound) and 1 (nothing lost)"),)
+_SHARE = (Limit(0.0, 1.0, "is a share of the work: above 0, at most 1", "low"),)
+_DRIVES = _not_negative("negative damping would drive the body")
+_TURNS = (Limit(-math.inf, math.inf, "must not be 0: it is how often the body turns in one turn", apart=LEAST_RATIO),)
+_BODY = _text("the body it acts on", required=True)
+_AGAINST = _text("another body: it acts between the two, on one and back on the other", absent="the movement")
 
 SCENE: Keys = {
-    **{"title": PLAIN, "schema": NUMBER, "gravity": Key(units.ACCELERATION)},
-    **{"tangential_law": PLAIN, "nu": NUMBER},
+    "title": _text("shown in pictures and reports", absent="the folder's name"),
+    "schema": _number("the version of this format", absent="1"),
+    "gravity": Key(units.ACCELERATION, doc="its two components in the movement", form=PAIR, absent="none"),
+    "tangential_law": _text("friction in the expansion of impacts", choices=tuple(TANGENTIAL_CODE), absent="coulomb"),
+    "nu": _number("belongs to `pg1996`", limits=(Limit(0.0, 1.0, "must lie between 0 and 1"),)),
 }
 SHAPES = ("circle", "polygon", "line")
-BODY: Keys = {
-    **{"drawing": PLAIN, "layers": PLAIN, "draw": PLAIN, "units": PLAIN, "snap": LENGTH, "material": LENGTH},
-    **{"circle": LENGTH, "polygon": LENGTH, "line": LENGTH},
-    **{"pivot": LENGTH, "position": LENGTH, "motion": PLAIN, "axis": NUMBER, "angle": ANGLE},
-    **{"velocity": Key(units.SPIN, units.SPEED), "spin": Key(units.SPIN)},
-    **{"mass": Key(units.MASS), "inertia": Key(units.INERTIA), "centre_of_mass": LENGTH, "solids": PLAIN},
-    **{"on": PLAIN, "adjust": PLAIN},
-    **{"swing": PLAIN, "path": PLAIN},
-}
-SWING: Keys = {  # of a driven body
-    "amplitude": Key(units.ANGLE, units.LENGTH),
-    "frequency": Key(units.FREQUENCY),
-    "phase": ANGLE,
+SWING: Keys = {
+    "amplitude": Key(units.ANGLE, units.LENGTH, doc="to either side", required=True),
+    "frequency": Key(units.FREQUENCY, doc="how often", required=True, limits=_above_zero("it says how often the body swings")),
+    "phase": _angle("of the sine, at the start"),
 }
 SOLID: Keys = {
-    **{"layer": PLAIN, "thickness": LENGTH, "density": Key(units.DENSITY), "count": NUMBER},
-    **{"bores": PLAIN, "turned": LENGTH, "lying": PLAIN},
-    **{"hairspring": PLAIN, "inner": LENGTH, "outer": LENGTH, "turns": NUMBER, "length": LENGTH, "width": LENGTH},
+    "layer": _text("where it is drawn", absent="the outlines of `layers`"),
+    "thickness": _length("of a plate, or height of a strip", limits=_above_zero("it is the height of the plate")),
+    "density": Key(units.DENSITY, doc="of its material", required=True, limits=_above_zero("steel has 7.85 g/cm³")),
+    "count": _number(
+        "copies, evenly about the pivot",
+        default=1.0,
+        limits=(Limit(1.0, MOST_COPIES, f"a whole number from 1 to {MOST_COPIES} is needed here", whole=True),),
+    ),
+    "bores": Key(doc="layers with bores that are taken out of a plate", form=TEXTS),
+    "turned": _length("layer with the axis of a half profile, or two points of it", form=POINTS),
+    "lying": Key(doc="the turned part lies in the plane", form=FLAG, absent="false"),
+    "hairspring": Key(doc="one third of it counts", form=FLAG, absent="false"),
+    "inner": _length("radius of a hairspring", limits=_above_zero("it is the radius of the innermost coil")),
+    "outer": _length("radius of a hairspring", limits=_above_zero("it is the radius of the outermost coil")),
+    "turns": _number("of a hairspring", limits=_above_zero("it is the number of coils")),
+    "length": _length("of a hairspring's strip", limits=_above_zero("it is the length of the strip")),
+    "width": _length("of a hairspring's strip", limits=_above_zero("it is how thick the strip is, seen from above")),
 }
-ADJUST: Keys = {  # of one layer of a body's drawing, or of one outline of it
-    **{"turn": ANGLE, "about": LENGTH, "shift": LENGTH, "radial": LENGTH},
-    **{"along": LENGTH, "face": LENGTH, "near": LENGTH},
+ADJUST: Keys = {
+    "turn": _angle("counter-clockwise"),
+    "about": _length("a place, or a layer with one point or circle", form=PAIR, absent="the centre of area"),
+    "shift": _length("by these two lengths", form=PAIR),
+    "radial": _length("away from `about`, else from the pivot"),
+    "along": _length("along the straight edge nearest to `face`"),
+    "face": _length("the end of that edge towards which", form=PAIR),
+    "near": _length("only the outline nearest to this place", form=PAIR, absent="all of the layer"),
+}
+BODY: Keys = {
+    "drawing": _text("DXF or SVG file, relative to the scene"),
+    "layers": Key(doc="layers whose closed outlines can touch", form=TEXTS, absent="all but the pivot's"),
+    "draw": Key(doc="layers that are drawn though they cannot touch", form=TEXTS, absent="all others"),
+    "units": _text("unit of the drawing", absent="the file's"),
+    "snap": _length(
+        "ends this close are one point", default=1e-6, limits=_above_zero("it is the gap that may be closed"), absent="1 µm"
+    ),
+    "material": _length("side of the material of open chains: left, right, or a point in it; or a table by layer"),
+    "circle": _length("instead of a drawing: radius", limits=_above_zero("it is the radius")),
+    "polygon": _length("instead of a drawing: its corners", form=POINTS),
+    "line": _length("instead of a drawing: two points, material on the left", form=POINTS),
+    "pivot": _length("a layer, what is near a place, or a point of the drawing", form=PAIR, absent="the drawing's origin"),
+    "position": _length("where the origin sits in the movement, or `as drawn`", form=PAIR, absent="the movement's origin"),
+    "motion": _text("what the body can do", choices=(*MOTIONS, DRIVEN), absent="pivot"),
+    "axis": _number("direction of travel", form=PAIR, motions=("slide", DRIVEN)),
+    "angle": _angle("at the start"),
+    "velocity": Key(units.SPIN, units.SPEED, doc="at the start; of a free body two components", absent="at rest"),
+    "spin": Key(units.SPIN, doc="angular velocity at the start", motions=("free",), beside="; here the key is velocity"),
+    "mass": Key(units.MASS, doc="of the whole body", limits=_WEIGHT, absent="from its solids"),
+    "inertia": Key(
+        units.INERTIA, doc="about the origin, of a free body about its centre", limits=_WEIGHT, absent="from its solids"
+    ),
+    "centre_of_mass": _length("from the pivot; with `mass` and `inertia`", form=PAIR, absent="that of the outlines"),
+    "solids": Key(doc="what it is made of", inner=SOLID, form=TABLES_LISTED),
+    "on": _text("the body that carries it", absent="the movement"),
+    "adjust": Key(doc="turns and shifts parts of its drawing", inner=ADJUST, form=LAYERS),
+    "swing": Key(doc="a sine that it is driven by", inner=SWING, form=TABLE, motions=(DRIVEN,)),
+    "path": Key(doc="times and travels that it is driven through", form=POINTS, motions=(DRIVEN,)),
+}
+COIL: Keys = {
+    "inner": _length("radius of the collet", required=True, limits=_above_zero("it is the radius of the collet")),
+    "outer": _length(
+        "the stud's distance from the pivot", required=True, limits=_above_zero("it is the stud's distance from the pivot")
+    ),
+    "turns": _number(
+        "from collet to stud",
+        required=True,
+        limits=(Limit(FEWEST_TURNS, MOST_TURNS, f"draw {FEWEST_TURNS:g} to {MOST_TURNS:g} turns"),),
+    ),
+    "stud": _angle("its direction"),
+    "width": _length("of the strip", default=3e-5, limits=_above_zero("it is seen from above"), absent="0.03 mm"),
+}
+LEAF: Keys = {
+    "modulus": Key(units.PRESSURE, doc="of elasticity", required=True, limits=_above_zero("it is the modulus of elasticity")),
+    "length": _length(
+        "from the clamp to where it presses",
+        required=True,
+        limits=_above_zero("it is measured from the clamp to where the leaf presses"),
+    ),
+    "width": _length("across the plane", required=True, limits=_above_zero("it is the height of the strip, across the plane")),
+    "thickness": _length(
+        "in the plane", required=True, limits=_above_zero("it is the one in the plane, in which the leaf bends")
+    ),
+    "arm": _length(
+        "of its force, on a pivoted body", limits=_above_zero("it is the distance of the leaf's force from the pivot")
+    ),
 }
 SPRING: Keys = {
-    "body": PLAIN,
-    "frequency": Key(units.FREQUENCY),
-    "stiffness": Key(units.ROTARY_STIFFNESS, units.LINEAR_STIFFNESS),
-    "rest": Key(units.ANGLE, units.LENGTH),
-    "draw": PLAIN,
-    "against": PLAIN,
-    "leaf": PLAIN,
-    "preload": Key(units.TORQUE, units.FORCE),
-    "stop": Key(units.ANGLE, units.LENGTH),
-    "restitution": NUMBER,
+    "body": _BODY,
+    "frequency": Key(
+        units.FREQUENCY,
+        doc="of the free oscillation",
+        limits=_above_zero("it is the frequency of the free oscillation"),
+        instead_of=("stiffness", "leaf"),
+    ),
+    "stiffness": Key(
+        units.ROTARY_STIFFNESS,
+        units.LINEAR_STIFFNESS,
+        doc="of the spring",
+        limits=_above_zero("a spring pulls back"),
+        instead_of=("frequency", "leaf"),
+    ),
+    "rest": Key(units.ANGLE, units.LENGTH, doc="where it does not act", instead_of=("preload",)),
+    "draw": Key(doc="the hairspring that pictures show", inner=COIL, form=TABLE),
+    "against": _AGAINST,
+    "leaf": Key(doc="a leaf that is the spring", inner=LEAF, form=TABLE, instead_of=("frequency", "stiffness")),
+    "preload": Key(units.TORQUE, units.FORCE, doc="with which it presses at its stop, or at the start", instead_of=("rest",)),
+    "stop": Key(units.ANGLE, units.LENGTH, doc="where the body is stopped on its way to rest", absent="none"),
+    "restitution": _number("of impacts on the stop", limits=(Limit(0.0, 1.0, "of impacts on the stop, lies between 0 and 1"),)),
 }
-COIL: Keys = {"inner": LENGTH, "outer": LENGTH, "turns": NUMBER, "stud": ANGLE, "width": LENGTH}  # draw of a spring
-LEAF: Keys = {  # leaf of a spring
-    "modulus": Key(units.PRESSURE),
-    **{"length": LENGTH, "width": LENGTH, "thickness": LENGTH, "arm": LENGTH},
+TRAIN: Keys = {
+    "ratio": _number("turns of the body for one of the wheel", required=True, limits=_TURNS),
+    "inertia": Key(units.INERTIA, doc="of the wheel", required=True, limits=_above_zero("it is the wheel's moment of inertia")),
 }
 TORQUE: Keys = {
-    **{"body": PLAIN, "value": Key(units.TORQUE, units.FORCE), "over": PLAIN, "table": PLAIN, "against": PLAIN},
-    **{"ratio": NUMBER, "efficiency": NUMBER, "run_down": ANGLE, "train": PLAIN},
-    **{"period": Key(units.TIME)},
+    "body": _BODY,
+    "value": Key(
+        units.TORQUE,
+        units.FORCE,
+        doc="a constant torque, or a force on a sliding body",
+        instead_of=("table", "over", "period", "ratio", "efficiency", "run_down", "train"),
+    ),
+    "over": _text("what the table's first column holds", choices=("angle", "travel", "time", "barrel")),
+    "table": Key(doc="pairs, linear between them", form=POINTS, instead_of=("value",)),
+    "against": _AGAINST,
+    "ratio": _number("turns of the body for one of the barrel", limits=_TURNS),
+    "efficiency": _number("of the train", default=1.0, limits=_SHARE),
+    "run_down": _angle("of the barrel since it was wound"),
+    "train": Key(doc="the wheels between barrel and body", inner=TRAIN, form=TABLES_LISTED),
+    "period": Key(units.TIME, doc="after which a table over time repeats", limits=_above_zero("the table repeats after it")),
 }
-TRAIN: Keys = {"ratio": NUMBER, "inertia": Key(units.INERTIA)}  # of one wheel between mainspring and body
 DAMPING: Keys = {
-    "body": PLAIN,
-    "q_factor": NUMBER,
-    "viscous": Key(units.ROTARY_VISCOUS, units.LINEAR_VISCOUS),
-    "quadratic": Key(units.ROTARY_QUADRATIC, units.LINEAR_QUADRATIC),
-    "coulomb": Key(units.TORQUE, units.FORCE),
-    "against": PLAIN,
+    "body": _BODY,
+    "q_factor": _number(
+        "quality factor of the oscillation",
+        limits=_above_zero("it is the quality factor of the oscillation, about 250 for a balance"),
+        instead_of=("viscous",),
+    ),
+    "viscous": Key(units.ROTARY_VISCOUS, units.LINEAR_VISCOUS, doc="times speed", limits=_DRIVES, instead_of=("q_factor",)),
+    "quadratic": Key(units.ROTARY_QUADRATIC, units.LINEAR_QUADRATIC, doc="times the square of the speed", limits=_DRIVES),
+    "coulomb": Key(units.TORQUE, units.FORCE, doc="dry friction in the bearing", limits=_DRIVES),
+    "against": _AGAINST,
 }
-CONTACT: Keys = {"between": PLAIN, "friction": NUMBER, "restitution": NUMBER, "tangential_restitution": NUMBER}
+CONTACT: Keys = {
+    "between": Key(doc="two sides, each a body or BODY.LAYER", form=TEXTS, required=True),
+    "friction": _number(
+        "Coulomb's coefficient", limits=_not_negative("a negative friction coefficient would drive the bodies")
+    ),
+    "restitution": _number("Poisson's", limits=_REBOUND),
+    "tangential_restitution": _number("of the laws `pg1996` and `shifted`", limits=_REBOUND),
+}
 GEAR: Keys = {
-    **{"between": PLAIN, "ratio": NUMBER, "backlash": Key(units.ANGLE, units.LENGTH)},
-    **{"restitution": NUMBER, "efficiency": NUMBER, "pressure_angle": ANGLE},
+    "between": Key(doc="two bodies", form=TEXTS, required=True),
+    "ratio": _number("how far the second goes for one unit of the first", required=True),
+    "backlash": Key(
+        units.ANGLE,
+        units.LENGTH,
+        doc="play of the second while the first is held",
+        limits=_not_negative("play cannot be negative: leave it out for none"),
+    ),
+    "restitution": _number("of impacts when the play is used up", limits=_REBOUND),
+    "efficiency": _number("share of the work that arrives; needs play", default=1.0, limits=_SHARE),
+    "pressure_angle": _angle(
+        "of the teeth, for loads of pivots",
+        default=PRESSURE_ANGLE,
+        limits=(Limit(0.0, math.radians(45.0), "must lie between 0° and 45°; usual is 20°", "high"),),
+        absent="20°",
+    ),
 }
 LINE_SPRING: Keys = {
-    **{"between": PLAIN, "points": LENGTH, "stiffness": Key(units.LINEAR_STIFFNESS)},
-    **{"length": LENGTH, "tension": Key(units.FORCE), "viscous": Key(units.LINEAR_VISCOUS), "leaf": PLAIN},
+    "between": Key(doc="two bodies, or one and the movement", form=TEXTS, required=True),
+    "points": _length("one of each, from its pivot", form=POINTS, required=True),
+    "stiffness": Key(
+        units.LINEAR_STIFFNESS,
+        doc="of the spring",
+        limits=_above_zero("a spring pulls back"),
+        instead_of=("leaf",),
+    ),
+    "length": _length("without force", absent="that at the start"),
+    "tension": Key(units.FORCE, doc="at the start, instead of `length`"),
+    "viscous": Key(
+        units.LINEAR_VISCOUS, doc="damping along the line", limits=_not_negative("negative damping would drive the bodies")
+    ),
+    "leaf": Key(doc="a leaf that is the spring", inner=LEAF, form=TABLE, instead_of=("stiffness",)),
 }
-RUN: Keys = {"duration": Key(units.TIME), "record": Key(units.TIME), "tolerance": NUMBER}
-TIMEGRAPHER: Keys = {"lift_angle": ANGLE, "frequency": Key(units.FREQUENCY)}
-EXPECTATION: Keys = {"value": PLAIN, "tolerance": PLAIN}
-LOCK: Keys = {"versions": PLAIN, "drawings": PLAIN, "design": PLAIN}
+RUN: Keys = {
+    "duration": Key(
+        units.TIME, doc="how long to simulate", default=1.0, limits=_above_zero("it is how long to simulate"), absent="1 s"
+    ),
+    "record": Key(units.TIME, doc="what is kept: a word, windows of time, or a list of them", absent="all"),
+    "tolerance": _number(
+        "relative error per step",
+        default=USUAL_TOLERANCE,
+        limits=(
+            Limit(
+                FINEST_TOLERANCE,
+                COARSEST_TOLERANCE,
+                f"must lie between {FINEST_TOLERANCE:g} and {COARSEST_TOLERANCE:g}; {USUAL_TOLERANCE:g} is usual",
+            ),
+        ),
+    ),
+}
+TIMEGRAPHER: Keys = {
+    "lift_angle": _angle(
+        "arc of the balance during which it touches the lever",
+        limits=(
+            *_above_zero("it is the arc of the balance during which it touches the lever"),
+            Limit(0.0, math.tau, "must be below a full turn", "high"),
+        ),
+    ),
+    "frequency": Key(
+        units.FREQUENCY,
+        doc="what the rate is measured against",
+        limits=_above_zero("the rate is measured against it"),
+        absent="the oscillator's",
+    ),
+}
+EXPECTATION: Keys = {
+    "value": Key(doc="what a run must give", required=True),
+    "tolerance": Key(doc="how far it may be off", required=True, limits=_above_zero("")[:1]),
+}
+LOCK: Keys = {
+    "versions": Key(doc="what wrote the scene"),
+    "drawings": Key(doc="digests of the drawings"),
+    "design": Key(doc="the dimensions of the design"),
+}
+
+DESIGN = "design"  # [design], whose keys are the dimensions of the design it names
 
 TABLES = {"scene": SCENE, "run": RUN, "timegrapher": TIMEGRAPHER, "lock": LOCK}  # [name]
 NAMED = {"bodies": BODY, "expect": EXPECTATION}  # [name.anything]
-LISTED = {
+LISTED = {  # [[name]]
     "springs": SPRING,
     "torques": TORQUE,
     "damping": DAMPING,
     "contacts": CONTACT,
     "gears": GEAR,
     "line_springs": LINE_SPRING,
-}  # [[name]]
-WITHIN = {  # name = { … }
-    ("bodies", "swing"): SWING,
-    **{("springs", "draw"): COIL, ("springs", "leaf"): LEAF, ("line_springs", "leaf"): LEAF},
 }
-DESIGN = "design"  # [design], whose keys are the dimensions of the design it names
-SECTIONS = (*TABLES, DESIGN, *NAMED, *LISTED)
+SECTIONS: Keys = {
+    **{name: Key(inner=keys, form=TABLE) for name, keys in TABLES.items()},
+    DESIGN: Key(doc="the design that the scene is made from, and its dimensions", form=TABLE),
+    **{name: Key(inner=keys, form=NAMED_TABLES) for name, keys in NAMED.items()},
+    **{name: Key(inner=keys, form=TABLES_LISTED) for name, keys in LISTED.items()},
+}
 
 
 def key_at(path: tuple[str, ...]) -> Key | None:
     """The description of a dotted path such as ("bodies", "lever", "position", "1"); None where no such key exists."""
-    if not path:
-        return None
-    section, rest = path[0], path[1:]
-    if section in TABLES:
-        return TABLES[section].get(rest[0]) if rest else None
-    if len(rest) < 2 or section not in SECTIONS:
-        return None
-    if (section, rest[1]) in WITHIN and len(rest) >= 3:
-        return WITHIN[section, rest[1]].get(rest[2])
-    if section in NAMED:
-        if rest[1] == "solids" and len(rest) >= 4:
-            return SOLID.get(rest[3])
-        if rest[1] == "adjust" and len(rest) >= 4:
-            inner = rest[4:] if rest[3].isdigit() else rest[3:]
-            return ADJUST.get(inner[0]) if inner else PLAIN
-        return NAMED[section].get(rest[1])
-    if section == "torques" and rest[1] == "train" and len(rest) >= 4:
-        return TRAIN.get(rest[3])
-    return LISTED[section].get(rest[1])
+    key, _, at = entered(path)
+    return None if at < len(path) or at == 0 else key
+
+
+def entered(path: tuple[str, ...]) -> tuple[Key, Keys, int]:
+    """How far a dotted path leads: the last key found, the keys beside the next word, and the number of that word.
+
+    That number is the length of the path where it ends at a key or in one of its elements, 0 where it ends in a section.
+    """
+    keys, at, key = SECTIONS, 0, Key()
+    while at < len(path):
+        if path[at] not in keys:
+            return key, keys, at
+        key = keys[path[at]]
+        inside = at + steps_into(key, path[at + 1 :]) + 1
+        if at == 0 and (inside >= len(path) or not key.inner):
+            return key, key.inner or keys, 0
+        if not key.inner or inside >= len(path):
+            break
+        keys, at = key.inner, inside
+    return key, keys, len(path) if path else 0
+
+
+def steps_into(key: Key, rest: tuple[str, ...]) -> int:
+    """How many words of a path lead into one of the tables of that key: none, a name, a number, or a layer and perhaps one."""
+    return {NAMED_TABLES: 1, TABLES_LISTED: 1, LAYERS: 2 if rest[1:2] and rest[1].isdigit() else 1}.get(key.form, 0)
 
 
 def siblings(path: tuple[str, ...]) -> tuple[str, ...]:
     """The keys that may stand where the last known table of `path` was entered; for suggestions."""
-    section = path[0] if path else ""
-    if section in TABLES:
-        return tuple(TABLES[section])
-    if (section, *path[2:3]) in WITHIN and len(path) > 3:
-        return tuple(WITHIN[section, path[2]])
-    if section in NAMED:
-        if path[2:3] == ("adjust",) and len(path) > 4:
-            return tuple(ADJUST)
-        return tuple(SOLID if path[2:3] == ("solids",) and len(path) > 4 else NAMED[section])
-    return tuple(LISTED[section]) if section in LISTED else SECTIONS
+    return tuple(entered(path)[1])
 
 
 def belongs(key: str) -> str:

@@ -23,7 +23,8 @@ from watchsim.scene.read_settings import read_expectations, read_heading, read_r
 from watchsim.scene.read_trains import note_carriers, read_gears, with_trains
 from watchsim.scene.roles import frequency
 from watchsim.scene.scene import Scene, Written
-from watchsim.scene.values import Table, file_digest, key_lines, parsed, shortened, shown, understood
+from watchsim.scene.toml import file_digest, key_lines, parsed
+from watchsim.scene.values import Table, shortened, shown, understood
 
 # How does the mapping of a scene file become a scene, and what does it become with some of its keys changed?
 #

@@ -11,13 +11,14 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from watchsim.construction.design import drawing_of
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.findings import Finding
 from watchsim.drawing.nodes import Track
-from watchsim.drawing.read import SNAP
 from watchsim.drawing.write import Sheet
-from watchsim.geometry.loops import Loop
+from watchsim.geometry.loops import AT_ONCE, Floats, Ints, Loop, near_pairs, table_of
 from watchsim.geometry.primitives import TURN, Arc, Line, Point
 from watchsim.scene.keys import SHAPES, closest, nearest
 from watchsim.scene.placing import adjusted, given_pivot, marked_pivot
@@ -30,6 +31,8 @@ Made = Mapping[str, Sheet]  # name of a drawing in the scene -> the sheet
 
 # Which outline does a shape written into the scene have: a circle, a polygon, a line?
 
+ROUNDING = 1e-12  # of the coordinates
+
 
 def shape_loops(table: Table, key: str) -> tuple[Loop, ...]:
     """The outline under "circle", "polygon" or "line" of a body; its layer is named after the shape. Empty after a fault."""
@@ -40,7 +43,7 @@ def shape_loops(table: Table, key: str) -> tuple[Loop, ...]:
 
 
 def _circle(table: Table) -> Loop:
-    radius = table.positive("circle", "it is the radius")
+    radius = table.quantity("circle", math.nan)
     return Loop((Arc(0.0, 0.0, radius, 0.0, TURN),), "circle")
 
 
@@ -94,32 +97,35 @@ def signed_area(points: Sequence[Point]) -> float:
 
 
 def first_crossing(points: Sequence[Point]) -> tuple[int, int] | None:
-    """Two sides that are no neighbours and meet."""
-    sides = list(zip(points, (*points[1:], points[0]), strict=True))
-    for i, first in enumerate(sides):
-        for j in range(i + 2, len(sides) - (1 if i == 0 else 0)):
-            if _meet(first, sides[j]):
-                return i, j
-    return None
+    """The first two sides, in their order, that are no neighbours and meet."""
+    corners, count = np.array(points), len(points)
+    sides = [Line(*a, *b) for a, b in zip(points, (*points[1:], points[0]), strict=True)]
+    near = near_pairs(table_of(sides), ROUNDING * float(np.abs(corners).max()))
+    found = None
+    for k in range(0, len(near.first), AT_ONCE):
+        found = found or _meeting(corners, near.first[k : k + AT_ONCE], near.second[k : k + AT_ONCE])
+    # Where sides crowd not every pair is given: then all pairs before the one that was found, most often very few.
+    for i in range(min(found[0] + 1 if found else count, count - 2) if near.crowds else 0):
+        others = np.arange(i + 2, count)
+        if earlier := _meeting(corners, np.full(len(others), i), others):
+            return earlier
+    return found
 
 
-def _meet(first: tuple[Point, Point], second: tuple[Point, Point]) -> bool:
-    (a, b), (c, d) = first, second
-    return _turn(a, b, c) * _turn(a, b, d) <= 0 and _turn(c, d, a) * _turn(c, d, b) <= 0 and _boxes_meet(first, second)
+def _meeting(corners: Floats, first: Ints, second: Ints) -> tuple[int, int] | None:
+    """The first of these pairs of sides (first < second) that meet and are no neighbours."""
+    a, b, c, d = (corners[k % len(corners)].T for k in (first, first + 1, second, second + 1))
+    crossing = (_turn(a, b, c) * _turn(a, b, d) <= 0) & (_turn(c, d, a) * _turn(c, d, b) <= 0)
+    beside = np.all((np.maximum(a, b) >= np.minimum(c, d)) & (np.maximum(c, d) >= np.minimum(a, b)), axis=0)
+    apart = (second - first > 1) & (second - first < len(corners) - 1)
+    places = np.flatnonzero(crossing & beside & apart)
+    return (int(first[places[0]]), int(second[places[0]])) if len(places) else None
 
 
-def _turn(a: Point, b: Point, c: Point) -> int:
-    cross = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-    return (cross > 0.0) - (cross < 0.0)
-
-
-def _boxes_meet(first: tuple[Point, Point], second: tuple[Point, Point]) -> bool:
-    for axis in (0, 1):
-        low, high = sorted(point[axis] for point in first)
-        other_low, other_high = sorted(point[axis] for point in second)
-        if high < other_low or other_high < low:
-            return False
-    return True
+def _turn(a: Floats, b: Floats, c: Floats) -> Floats:
+    """Sign of the turn from a-b to a-c, of points (2, n)."""
+    turned: Floats = np.sign((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
+    return turned
 
 
 # On which side of an open chain is the material?
@@ -339,7 +345,7 @@ def _open(table: Table, folder: Path, made: Made) -> Drawing | None:
         what = "this is a folder; the" if name else "the"
         table.fault("drawing", f"{what} name of a drawing is needed here: {there}", with_value=True)
         return None
-    snap = table.positive("snap", "it is the gap that may be closed") if "snap" in table else SNAP
+    snap = table.quantity("snap")
     told = table.text("units")
     units = told if isinstance(table.mapping.get("units"), str) else None
     if name in made and not math.isnan(snap):

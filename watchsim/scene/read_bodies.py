@@ -13,14 +13,15 @@ from watchsim.drawing.findings import Finding
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Point
 from watchsim.geometry.solids import mass_properties
+from watchsim.scene.assign import motion_of
 from watchsim.scene.errors import Faults
-from watchsim.scene.keys import BODY, SWING, nearest
+from watchsim.scene.keys import BODY, DRIVEN, SWING, nearest
 from watchsim.scene.outlines import Made, Outlines, bored, read_outlines
 from watchsim.scene.read_bores import bore_notices, uniform_notices
 from watchsim.scene.read_solids import read_solids
-from watchsim.scene.scene import MOTIONS, Body, Prescribed, path, swing
+from watchsim.scene.scene import Body, Prescribed, path, swing
 from watchsim.scene.solids import Solid, Weight, more_seen, total
-from watchsim.scene.values import NAN, SMALLEST, TOO_SMALL, Table, shown
+from watchsim.scene.values import NAN, Table, shown
 from watchsim.units import ANGLE, LENGTH, SPEED, TIME
 
 # How heavy is a body, and where is its centre of mass?
@@ -118,11 +119,7 @@ def _note_massless(table: Table, motion: str, inertias: Inertias, outlines: Outl
     needs = () if driven else {"pivot": ("inertia",), "slide": ("mass",), "free": ("mass", "inertia")}.get(motion, ())
     promised = table.mapping.get("solids", []) not in ([], ()) or ("mass" in table and (outlines.loops or not outlines.sound))
     for key, value, example in (("mass", inertias.mass, "1 mg"), ("inertia", inertias.inertia, "0.05 mg·cm²")):
-        if key in table and 0.0 < value < SMALLEST:
-            table.fault(key, TOO_SMALL, with_value=True)
-        elif key in table and value < 0.0:
-            table.fault(key, "must not be negative", with_value=True)
-        elif key in needs and value == 0.0 and (key in table or not promised):
+        if key in needs and value == 0.0 and (key in table or not promised):
             why = f"the body can move ({motion}) but has no {key}"
             advice = f'Write {key} = "{example}" or give thickness and density in [[{table.path}.solids]]'
             table.fault(key if key in table else "", f"{why}. {advice}", with_value=key in table)
@@ -130,7 +127,6 @@ def _note_massless(table: Table, motion: str, inertias: Inertias, outlines: Outl
 
 # How is the motion of a driven body read?
 
-DRIVEN = "driven"
 LAWS = ("velocity", "swing", "path")
 MOST_POINTS = 2000
 
@@ -146,9 +142,6 @@ class Read:
 def read_prescribed(table: Table, start: float) -> Read | None:
     """The law of one body that starts at coordinate `start` (rad, or 0 m); None where nothing is prescribed."""
     if table.mapping.get("motion") != DRIVEN:
-        for key in ("swing", "path"):
-            if key in table:
-                table.fault(key, f'belongs to motion = "{DRIVEN}"')
         return None
     given = [key for key in LAWS if key in table]
     if len(given) != 1:
@@ -168,8 +161,8 @@ def _swing(table: Table, start: float) -> Read:
     inner = Table(table.mapping["swing"], f"{table.path}.swing", SWING, table.faults, table.motion)
     first = "1 mm" if table.motion == "slide" else "10°"
     amplitude, phase = inner.quantity("amplitude", NAN), inner.quantity("phase")
-    inner.lacks(("amplitude", "frequency"), f'swing = {{ amplitude = "{first}", frequency = "2 Hz" }}')
-    frequency = inner.positive("frequency", "it says how often the body swings") if "frequency" in inner else NAN
+    inner.lacks(f'swing = {{ amplitude = "{first}", frequency = "2 Hz" }}')
+    frequency = inner.quantity("frequency", NAN)
     if not math.isfinite(amplitude + phase + frequency):
         return Read(Prescribed(), 0.0)
     law, _, velocity = swing(start - amplitude * math.sin(phase), amplitude, frequency, phase)
@@ -267,7 +260,7 @@ def read_bodies(mapping: object, folder: Path, faults: Faults, made: Made | None
 def _with_motion(name: str, entry: dict[str, Any], faults: Faults) -> dict[str, Any]:
     """The entry with a motion that there is: after a fault the one that was probably meant, so that all else is read by it."""
     table = Table(entry, f"bodies.{name}", BODY, faults)
-    motion = table.one_of("motion", (*MOTIONS, DRIVEN), "pivot")
+    motion = table.one_of("motion", "pivot")
     guessed = next((likely for key, likely in LIKELY.items() if key in table), "fixed")
     if "motion" not in table:
         return {**table.mapping, **_forgotten(table)}
@@ -281,15 +274,6 @@ def _forgotten(table: Table) -> dict[str, str]:
             table.fault(key, f'belongs to motion = "{motion}", which is not written; a body turns unless motion says otherwise')
             return {"motion": motion}
     return {}
-
-
-def motion_of(bodies: Mapping[str, Any], name: object) -> str:
-    """The motion a body asks for, "pivot" where it says nothing readable."""
-    entry = bodies.get(name) if isinstance(bodies, Mapping) and isinstance(name, str) else None
-    motion = entry.get("motion", "pivot") if isinstance(entry, Mapping) else "pivot"
-    if motion == DRIVEN:
-        return "slide" if isinstance(entry, Mapping) and "axis" in entry else "pivot"
-    return motion if motion in MOTIONS else "pivot"
 
 
 def _drawing_path(entry: object, folder: Path) -> Path | None:
@@ -348,6 +332,7 @@ def _position(one: _Read, read: Mapping[str, _Read]) -> Point:
 def _body(one: _Read, position: Point, on: str | None) -> Body:
     table, motion, outlines, inertias = one.table, one.motion, one.outlines, one.inertias
     angle = table.quantity("angle")
+    table.note_motion(DRIVEN if table.mapping.get("motion") == DRIVEN else motion)
     prescribed = read_prescribed(table, angle if motion == "pivot" else 0.0)
     shift = (-inertias.origin[0], -inertias.origin[1])
     rest = outlines.drawn if outlines.drawn is not None else () if one.shared else outlines.rest
@@ -358,7 +343,7 @@ def _body(one: _Read, position: Point, on: str | None) -> Body:
         angle=angle,
         velocity=(prescribed.velocity,) if prescribed else _velocity(table, motion),
         axis=_axis(table, motion),
-        mass=inertias.mass if inertias.mass >= 0.0 else NAN,  # that it is negative has been noted
+        mass=inertias.mass,
         inertia=inertias.inertia,
         centre_of_mass=inertias.centre,
         loops=_shifted(outlines.loops, shift),
@@ -388,8 +373,6 @@ def _shifted(loops: tuple[Loop, ...], shift: Point) -> tuple[Loop, ...]:
 
 
 def _velocity(table: Table, motion: str) -> tuple[float, ...]:
-    if "spin" in table and motion != "free":
-        table.fault("spin", 'belongs to motion = "free"; here the key is velocity')
     if motion == "free":
         velocity = table.point("velocity", table.mapping["velocity"], SPEED) if "velocity" in table else (0.0, 0.0)
         return (*velocity, table.quantity("spin"))
@@ -403,8 +386,6 @@ def _velocity(table: Table, motion: str) -> tuple[float, ...]:
 def _axis(table: Table, motion: str) -> Point:
     """Unit direction of a sliding body."""
     if motion != "slide":
-        if "axis" in table:
-            table.fault("axis", 'belongs to motion = "slide" or "driven"')
         return (1.0, 0.0)
     if "axis" not in table:
         table.fault("", "a sliding body needs its direction. Write e.g. axis = [1.0, 0.0]")

@@ -21,7 +21,7 @@ Rows = tuple[tuple[float, float], ...]  # abscissa and value, in SI
 
 def repeated(table: Table, rows: Rows) -> tuple[Rows, float]:
     """The rows with the first once more, a period later, and the period (s)."""
-    period = table.positive("period", "the table repeats after it")
+    period = table.quantity("period", NAN)
     if rows and period <= rows[-1][0] - rows[0][0]:
         table.fault("period", "must be longer than the table, which goes on with its first row after it", with_value=True)
     return (*rows, (rows[0][0] + period, rows[0][1])) if rows else (), period
@@ -125,15 +125,8 @@ def read_contacts(
 
 def _contact(table: Table, known: BodyIndex) -> Contact:
     sides = _sides(table, known)
-    friction = table.quantity("friction")
-    if friction < 0.0:
-        table.fault("friction", "a negative friction coefficient would drive the bodies", with_value=True)
-    for key in ("restitution", "tangential_restitution"):
-        value = table.quantity(key)
-        if value < 0.0 or value > 1.0:
-            table.fault(key, "must lie between 0 (no rebound) and 1 (nothing lost)", with_value=True)
-    contact = Contact(sides, friction, table.quantity("restitution"), table.quantity("tangential_restitution"))
-    if 0.0 < contact.tangential_restitution <= 1.0:
+    contact = Contact(sides, *(table.quantity(key) for key in ("friction", "restitution", "tangential_restitution")))
+    if contact.tangential_restitution > 0.0:
         _note_law(table, contact, known.law)
     return contact
 

@@ -12,7 +12,7 @@ from watchsim.geometry.hairspring import Coil
 from watchsim.geometry.primitives import Point
 from watchsim.scene.errors import Faults
 from watchsim.scene.forces import Damping, LineSpring, Spring, Torque
-from watchsim.scene.keys import COIL, DAMPING, LEAF, LINE_SPRING, SPRING, TORQUE, Keys, nearest
+from watchsim.scene.keys import COIL, DAMPING, FEWEST_TURNS, LEAF, LINE_SPRING, MOST_TURNS, SPRING, TORQUE, Keys, nearest
 from watchsim.scene.read_contacts import read_against, repeated, rows_of
 from watchsim.scene.read_trains import BARREL, KEYS, mainspring_torque
 from watchsim.scene.roles import Oscillator, loads, oscillator
@@ -23,8 +23,6 @@ from watchsim.units import LENGTH
 
 # How is a spring drawn, which acts as a torque and has no shape of its own?
 
-WIDTH = 3e-5  # m, where the scene does not say
-FEWEST, MOST = 1.0, 100.0  # turns that a picture can show
 EXAMPLE_READ_COIL = 'draw = { inner = "0.5 mm", outer = "2.8 mm", turns = 13, stud = "90°" }'
 
 
@@ -40,13 +38,9 @@ def read_coil(table: Table, body: Body | None) -> Coil | None:
         return None
     keys = Table(table.mapping["draw"], f"{table.path}.draw", COIL, table.faults)
     known = len(table.faults.found)
-    keys.lacks(("inner", "outer", "turns"), EXAMPLE_READ_COIL)
-    inner = keys.positive("inner", "it is the radius of the collet") if "inner" in keys else math.nan
-    outer = keys.positive("outer", "it is the stud's distance from the pivot") if "outer" in keys else math.nan
-    turns = keys.quantity("turns", math.nan)
-    width = keys.positive("width", "it is seen from above") if "width" in keys else WIDTH
-    if not math.isnan(turns) and not FEWEST <= turns <= MOST:
-        keys.fault("turns", f"draw {FEWEST:g} to {MOST:g} turns", with_value=True)
+    keys.lacks(EXAMPLE_READ_COIL)
+    inner, outer, turns = (keys.quantity(key, NAN) for key in ("inner", "outer", "turns"))
+    width = keys.quantity("width")
     if outer <= inner:
         keys.fault("outer", "the stud must stand outside the collet: outer is no more than inner", with_value=True)
     stud = keys.quantity("stud")
@@ -56,7 +50,7 @@ def read_coil(table: Table, body: Body | None) -> Coil | None:
 def _weighed(body: Body | None) -> Coil | None:
     spirals = () if body is None or body.motion != "pivot" else [one for one in body.solids if one.kind == HAIRSPRING]
     for solid in spirals:
-        if solid.spiral is not None and FEWEST <= solid.spiral.turns <= MOST:
+        if solid.spiral is not None and FEWEST_TURNS <= solid.spiral.turns <= MOST_TURNS:
             return Coil(solid.spiral.inner, solid.spiral.outer, solid.spiral.turns, 0.0, solid.width)
     return None
 
@@ -68,12 +62,6 @@ def _weighed(body: Body | None) -> Coil | None:
 # On a pivoted body it presses at the end of an arm, which makes it a torsional spring of arm² times that.
 
 EXAMPLE_READ_LEAF = 'leaf = { modulus = "200 GPa", length = "5 mm", width = "0.5 mm", thickness = "0.08 mm" }'
-SIZES = {
-    "modulus": "it is the modulus of elasticity",
-    "length": "it is measured from the clamp to where the leaf presses",
-    "width": "it is the height of the strip, across the plane",
-    "thickness": "it is the one in the plane, in which the leaf bends",
-}
 
 
 def leaf_stiffness(table: Table, motion: str) -> float:
@@ -83,15 +71,15 @@ def leaf_stiffness(table: Table, motion: str) -> float:
         return NAN
     keys = Table(table.mapping["leaf"], f"{table.path}.leaf", LEAF, table.faults)
     turns = motion == "pivot" or (not motion and "arm" in keys)
-    needed = {**SIZES, **({"arm": "it is the distance of the leaf's force from the pivot"} if turns else {})}
-    keys.lacks(needed, EXAMPLE_READ_LEAF + (' with arm = "2 mm", on a pivoted body' if turns else ""))
+    example = EXAMPLE_READ_LEAF + (' with arm = "2 mm", on a pivoted body' if turns else "")
+    keys.lacks(example, *(("arm",) if turns else ()))
     if "arm" in keys and not turns:
         keys.fault("arm", "belongs to a leaf on a pivoted body: leave it out")
-    sizes = {key: keys.positive(key, why) if key in keys else NAN for key, why in needed.items()}
-    if sizes["thickness"] >= sizes["length"]:
+    modulus, length, width, thickness = (keys.quantity(key, NAN) for key in ("modulus", "length", "width", "thickness"))
+    if thickness >= length:
         keys.fault("thickness", "a leaf is thin: the formula of a cantilever needs thickness far below length", with_value=True)
-    bending = sizes["modulus"] * sizes["width"] * sizes["thickness"] ** 3 / 12.0
-    return 3.0 * bending / sizes["length"] ** 3 * sizes.get("arm", 1.0) ** 2
+    bending = modulus * width * thickness**3 / 12.0
+    return 3.0 * bending / length**3 * (keys.quantity("arm", NAN) if turns else 1.0) ** 2
 
 
 def read_rest(table: Table, body: Body | None, stiffness: float, other: Body | None) -> float:
@@ -107,8 +95,6 @@ def read_rest(table: Table, body: Body | None, stiffness: float, other: Body | N
 def read_stop(table: Table, body: Body | None, other: Body | None, rest: float) -> tuple[float | None, float]:
     """Where a spring rests on its stop (None without one), and the restitution of impacts there."""
     restitution = table.quantity("restitution")
-    if not 0.0 <= restitution <= 1.0 and not math.isnan(restitution):
-        table.fault("restitution", "of impacts on the stop, lies between 0 and 1", with_value=True)
     if "stop" not in table:
         if "restitution" in table:
             table.fault("restitution", 'belongs to a spring with a stop, such as stop = "0°": leave it out')
@@ -151,8 +137,6 @@ def _line_spring(table: Table, known: Mapping[str, Body]) -> LineSpring | None:
     ends = _ends(table, known)
     points = _points(table)
     stiffness, viscous = _stiffness(table), table.quantity("viscous")
-    if viscous < 0.0:
-        table.fault("viscous", "negative damping would drive the bodies", with_value=True)
     if "length" in table and "tension" in table:
         table.fault("tension", "length and tension say the same thing: leave one out")
     if ends is None:
@@ -176,7 +160,7 @@ def _stiffness(table: Table) -> float:
         return leaf_stiffness(table, "slide")
     if "stiffness" not in table and table.is_table:
         table.fault("", 'missing: stiffness = "20 N/m", or leaf = { … }')
-    return table.positive("stiffness", "a spring pulls back")
+    return table.quantity("stiffness", NAN)
 
 
 def at_start(body: Body | None, point: Point) -> Point:
@@ -318,11 +302,10 @@ def _stiffness_read_forces(entry: Entry) -> float:
     if "leaf" in table:
         return leaf_stiffness(table, table.motion)
     if "frequency" in table:
-        frequency = table.positive("frequency", "it is the frequency of the free oscillation")
-        return entry.mass * (math.tau * frequency) ** 2
+        return entry.mass * (math.tau * table.quantity("frequency")) ** 2
     if "stiffness" not in table and table.is_table:
         table.fault("", 'a spring needs frequency = "28800 vph" or stiffness = "0.758 µN·m/rad"; a leaf spring, leaf = { … }')
-    return table.positive("stiffness", "a spring pulls back")
+    return table.quantity("stiffness", NAN)
 
 
 def _torque(entry: Entry) -> Torque:
@@ -348,7 +331,7 @@ def _tabulated(entry: Entry) -> Torque:
     if "over" not in table:
         table.fault("", f'a table needs over = "{choices[0]}" or over = "time"')
         return nothing
-    over = table.one_of("over", choices, choices[0])
+    over = table.one_of("over", choices[0], choices)
     if not over:  # columns of what?
         return nothing
     for key, owner in {"period": "time", **dict.fromkeys(KEYS, BARREL)}.items():
@@ -367,9 +350,6 @@ def _damping(entry: Entry, swinging: Oscillator | None, spring_lost: bool) -> Da
     if table.is_table and not any(key in table for key in ("q_factor", "viscous", "quadratic", "coulomb")):
         choices = 'q_factor = 250, viscous = "0.6 nN·m·s/rad", quadratic = "1 nN·m·s²/rad²" or coulomb = "10 nN·m"'
         table.fault("", f"missing: {choices}")
-    for key in ("viscous", "quadratic", "coulomb"):
-        if table.quantity(key) < 0.0:
-            table.fault(key, "negative damping would drive the body", with_value=True)
     viscous = _from_quality(entry, swinging, spring_lost) if "q_factor" in table else table.quantity("viscous")
     return Damping(entry.name, viscous, table.quantity("quadratic"), table.quantity("coulomb"), entry.against)
 
@@ -379,7 +359,7 @@ def _from_quality(entry: Entry, swinging: Oscillator | None, spring_lost: bool) 
     table = entry.table
     if "viscous" in table:
         table.fault("q_factor", "q_factor and viscous say the same thing: leave one out")
-    quality = table.positive("q_factor", "it is the quality factor of the oscillation, about 250 for a balance")
+    quality = table.quantity("q_factor")
     if entry.body and swinging is None and not spring_lost:
         seen = f"neither a spring nor gravity pulls {entry.name} back, so it has no quality factor"
         table.fault("q_factor", f"{seen}. Add a spring under [[springs]], or gravity and mass; or write viscous")

@@ -18,19 +18,9 @@ from watchsim.scene.read_bores import bores_of_plate
 from watchsim.scene.solids import HAIRSPRING, LYING, PLATE, UPRIGHT, Solid, Weight
 from watchsim.scene.values import Table
 
-MOST_COPIES = 1000  # of one layer: each is weighed, drawn and looked at
 SPIRAL = ("inner", "outer", "turns", "length")
 SPRING_KEYS = (*SPIRAL, "width")
 LENGTHS = {"inner": "0.6 mm", "outer": "2.6 mm", "width": "0.03 mm", "thickness": "0.12 mm", "density": "7.85 g/cm³"}
-WHY = {
-    "thickness": "it is the height of the plate",
-    "density": "steel has 7.85 g/cm³",
-    "inner": "it is the radius of the innermost coil",
-    "outer": "it is the radius of the outermost coil",
-    "width": "it is how thick the strip is, seen from above",
-    "turns": "it is the number of coils",
-    "length": "it is the length of the strip",
-}
 
 
 def read_solids(table: Table, outlines: Outlines) -> tuple[Solid, ...]:
@@ -260,13 +250,8 @@ class _Reader:
         if key not in self.entry:
             self.entry.fault("", f'{key} is missing. Write e.g. {key} = "{LENGTHS[key]}"')
             return math.nan
-        return self.entry.positive(key, WHY[key])
+        return self.entry.quantity(key, math.nan)
 
     def _count(self) -> int:
-        value = self.entry.quantity("count", 1.0)
-        if math.isnan(value):
-            return 1
-        if not 1.0 <= value <= MOST_COPIES or value != round(value):
-            self.entry.fault("count", f"a whole number from 1 to {MOST_COPIES} is needed here", with_value=True)
-            return 1
-        return int(value)
+        value = self.entry.quantity("count")
+        return 1 if math.isnan(value) else int(value)

@@ -22,7 +22,7 @@ from watchsim.simulation.first_closing import first_touch
 from watchsim.simulation.free_motion import flow
 from watchsim.simulation.integrator import NONE_FIRED, coupled_step, first_leave, first_turn
 from watchsim.simulation.modes import begin_instant, decide_once, forget_decisions
-from watchsim.simulation.options import OptionsRef
+from watchsim.simulation.options import OptionsRef, longest_step
 from watchsim.simulation.scratch import MONITORS, RECENT, SUMS, RecordRef, keep_row, scratch_by_reference
 from watchsim.simulation.state import NO_CONTACT, StateRef, Stop
 from watchsim.simulation.step_path import (
@@ -176,7 +176,7 @@ def _smooth_step(model, cells, state, options, end_time, scratch, record):
         scratch.step.span.length = min(length, left)
         leave = first_turn(model, state)
     else:
-        longest = min(left, options.max_step, next_knot(model, state.clock.time) - state.clock.time)
+        longest = min(left, longest_step(options, state.clock.time), next_knot(model, state.clock.time) - state.clock.time)
         made, smallest = coupled_step(model, state, options, longest, scratch)
         if not made:
             return Stop.STEP_TOO_SMALL, False
@@ -231,7 +231,7 @@ def _note_end(state, contact, code, ended):
 @kernel
 def _reaches(model, state, options, end_time):
     """True if the next step, taken freely, might come as far as `end_time`."""
-    longest = min(state.clock.step, options.max_step)
+    longest = min(state.clock.step, longest_step(options, state.clock.time))
     if can_fly(model, state):
         longest, _ = flight_length(model, state, options)
     return longest >= end_time - state.clock.time

@@ -14,6 +14,7 @@ from watchsim.jit import kernel
 from watchsim.simulation.coupled_motion import EXTENT, TANGENTIAL, engage, motion
 from watchsim.simulation.dop853 import E3, E5, STAGES, A, C, D, dense, dense_value
 from watchsim.simulation.free_motion import is_open, narrowed, next_time, opened, turning_time
+from watchsim.simulation.options import longest_step
 from watchsim.simulation.scratch import COUPLED, MONITORS, SUMS
 from watchsim.simulation.step_path import bound_accelerations
 from watchsim.tolerances import ROOT_RESOLUTION, SLIP_SLACK, SMALLEST_STEP, WITHIN_ENDS
@@ -271,7 +272,7 @@ def coupled_step(model, state, options, longest, scratch):
         factor = min(GROW, max(SHRINK, SAFETY * error**-0.125)) if error > 0.0 else GROW
         if error <= 1.0:
             break
-        if not h > SMALLEST_STEP * options.max_step:
+        if not h > SMALLEST_STEP * longest_step(options, state.clock.time):
             return False, smallest
         state.counts.rejected_steps += 1
         shrunk = True
@@ -279,7 +280,7 @@ def coupled_step(model, state, options, longest, scratch):
     proposed = h * (min(1.0, factor) if shrunk else factor)
     if not shrunk:  # a step cut short by `longest` says nothing against a longer next one
         proposed = max(proposed, min(state.clock.step, h * GROW))
-    state.clock.step = min(options.max_step, proposed)
+    state.clock.step = min(longest_step(options, state.clock.time), proposed)
     bound_accelerations(step, n)
     state.counts.steps += 1
     return True, smallest

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, NamedTuple
 
-from watchsim.jit import by_reference
+from watchsim.jit import by_reference, kernel
 from watchsim.tolerances import (
     ACCUMULATION_SPEED,
     ACCUMULATION_TIME,
@@ -46,15 +46,16 @@ class Options(NamedTuple):
     accumulation_speed: float  # m/s: faster rebounds are never ended by rule
     sleep: float  # share of a coordinate's force terms below which its acceleration counts as zero
     row_phase: float  # rad: spacing of recorded rows in free flight, in phase of the coordinate's own oscillation
-    max_step: float  # s
+    max_step: float  # s, from the duration the scene gives; see `longest_step`
+    natural: float  # s, `natural_step`
     size: float  # m, the scene's size
 
 
 OptionsRef = by_reference(Options, __name__)
 
 
-def options_for(size: float, tolerance: float, max_step: float) -> Options:
-    """Options for a scene whose contact outlines are `size` metres across."""
+def options_for(size: float, tolerance: float, longest: float, natural: float = math.inf) -> Options:
+    """Options for a scene whose contact outlines are `size` metres across; the two longest steps in seconds."""
     return Options(
         tolerance=tolerance,
         gap_zero=GAP_ZERO * size,
@@ -72,11 +73,22 @@ def options_for(size: float, tolerance: float, max_step: float) -> Options:
         sleep=SLEEP,
         # Rates between rows are off by the 5th power of their spacing: here by less than the tolerance.
         row_phase=min(max(FINEST_ROWS, 0.1 * (tolerance / 1e-9) ** 0.2), COARSEST_ROWS),
-        max_step=max_step,
+        max_step=min(longest, natural),
+        natural=natural,
         size=size,
     )
 
 
-def natural_step(compiled: Compiled, longest: float) -> float:
-    """Longest step: a quarter of the fastest spring's period, so that no turning point hides between two others."""
-    return min(longest, 0.5 * math.pi / compiled.fastest) if compiled.fastest else longest
+def natural_step(compiled: Compiled) -> float:
+    """Longest step (s) by the springs: a quarter of the fastest one's period, so that no turning point hides between two others."""
+    return 0.5 * math.pi / compiled.fastest if compiled.fastest else math.inf
+
+
+@kernel
+def longest_step(options, t):
+    """The longest step at time t, s.
+
+    Without springs it follows from the duration the scene gives, not from the requested one: how far a run is to go must not
+    change a bit of it. What goes on far beyond that duration may take steps as long as the time that has passed.
+    """
+    return max(options.max_step, min(t, options.natural))

@@ -371,7 +371,9 @@ class OverlapWatch:
         """The time after t (s) at which the state must be looked at, for want of rows; infinity where there are rows."""
         if self._sees_rows:
             return math.inf
-        spacing = self._scene.duration / LOOKS
+        # Twice as far apart whenever the time has doubled since the end of the scene's duration.
+        doublings = max(math.frexp(t / self._scene.duration)[1] - 1, 0)
+        spacing = math.ldexp(self._scene.duration / LOOKS, doublings)
         return (math.floor(t / spacing * (1.0 + 1e-12)) + 1.0) * spacing
 
     def see_rows(self, rows: Array) -> None:

@@ -218,8 +218,7 @@ def load_for(compiled: Compiled) -> None:
 class Run:
     """A run under way: the loop's arrays and what has been kept. By events; see `moreau.MoreauRun` for fixed steps.
 
-    The step of a scene without springs is bounded by the duration the scene gives, not by the requested one: how far a run is
-    to go must not change a bit of it.
+    How far a run is to go must not change a bit of it: steps and looks follow from the scene and the time reached.
     """
 
     method = EVENT_DRIVEN
@@ -228,7 +227,7 @@ class Run:
     def __init__(self, scene: Scene, compiled: Compiled, tolerance: float, recording: Recording) -> None:
         model = compiled.model
         self.scene, self.compiled, self.tolerance = scene, compiled, tolerance
-        self.options: Options = options_for(compiled.size, tolerance, natural_step(compiled, scene.duration))
+        self.options: Options = options_for(compiled.size, tolerance, scene.duration, natural_step(compiled))
         self.state: State = new_state(model, compiled.q, compiled.u)
         self.state.clock.step = FIRST_STEP * self.options.max_step
         self.finder = CellFinder(model)
@@ -242,7 +241,8 @@ class Run:
         )
         self.tally = Tally(scene, self.pairs)
         # A step wider, for the rows next to a window.
-        windows = np.array(self.kept.windows, float).reshape(-1, 2) + self.options.max_step * np.array([-1.0, 1.0])
+        windows = np.array(self.kept.windows, float).reshape(-1, 2)
+        windows += np.maximum(self.options.max_step, np.minimum(windows, self.options.natural)) * np.array([-1.0, 1.0])
         self.record = new_record(model, ROWS + ROWS_PER_STEP, EVENTS + EVENTS_PER_CONTACT * room_for(model), windows)
         self.watch = OverlapWatch(scene, compiled, self.method, self.kept.windows)
         self.stored_at_start = stored_energy(model, self.state.q, self.state.u)
@@ -274,8 +274,8 @@ class Run:
         return words_of(self.scratch.work.lcp.worst, float)
 
     def settings(self) -> dict[str, Any]:
-        """What must be the same when a saved state is taken up."""
-        return {"method": self.method, **{name: float(value) for name, value in self.options._asdict().items()}}
+        """What must be the same when a saved state is taken up; the natural step follows from the model."""
+        return {"method": self.method, **{name: float(value) for name, value in self.options._asdict().items() if name != "natural"}}
 
     def save(self) -> SavedState:
         """The state now, with the sums over all events so far."""

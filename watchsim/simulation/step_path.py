@@ -26,6 +26,7 @@ from watchsim.simulation.free_motion import (
     opened,
     quarter_period,
 )
+from watchsim.simulation.options import longest_step
 from watchsim.simulation.scratch import FLIGHT, is_kept, keep_event, keep_row
 from watchsim.simulation.state import EventKind
 from watchsim.tolerances import FLIGHT_SIZES, PASSAGE_RESOLUTION
@@ -79,7 +80,7 @@ def _time_far(model, state, i):
 @kernel
 def flight_length(model, state, options):
     """(length, row spacing): of an exact flight now."""
-    length, spacing = options.max_step, math.inf
+    length, spacing = longest_step(options, state.clock.time), math.inf
     for i in range(len(model.coordinates)):
         if state.awake[i]:
             length = min(length, quarter_period(model.coordinates[i]), _time_far(model, state, i))

@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
+from watchsim.scene.assign import motion_of
 from watchsim.scene.errors import Fault, SceneError
 from watchsim.scene.keys import LISTED, NAMED, key_at
-from watchsim.scene.read_bodies import motion_of
 from watchsim.scene.scene import Scene
 from watchsim.units import DIMENSIONS, NUMBER, Dimension, UnitError, known_unit, parse, split
 

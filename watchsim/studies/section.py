@@ -147,7 +147,7 @@ class Loop:
         self.scene, self.tolerance = scene, tolerance
         self.compiled: Compiled = like.compiled if like else compile_scene(scene)
         model = self.compiled.model
-        self.options = options_for(self.compiled.size, tolerance, natural_step(self.compiled, scene.duration))
+        self.options = options_for(self.compiled.size, tolerance, scene.duration, natural_step(self.compiled))
         self.finder: CellFinder = like.finder if like else CellFinder(model)
         self._scratch = new_scratch(model)
         self._record = new_record(model, ROWS_PER_STEP + 64, EVENTS + EVENTS_PER_CONTACT * room_for(model), NO_ROWS)

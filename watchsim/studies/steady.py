@@ -19,7 +19,7 @@ from watchsim.analysis.verdict_kinds import STOPS, TICKS, UNSETTLED, VERDICTS
 from watchsim.scene.errors import Faults, SceneError
 from watchsim.scene.roles import is_driven, only_presses, roles
 from watchsim.scene.scene import Scene
-from watchsim.scene.values import key_lines
+from watchsim.scene.toml import key_lines
 from watchsim.simulation.state import State
 from watchsim.studies.all_cycles import Survey, Swings, judged, late_means, run_from, with_all_cycles
 from watchsim.studies.cycle import Cycle
