@@ -25,21 +25,17 @@ def why_no_timing(run: Trajectory, found: Beats | None, numbers: Mapping[str, An
     if numbers["amplitude_deg"] is not None and numbers["rate_s_per_d"] is not None:
         return None
     if found is None:
-        return _nothing_swings(run)
+        scene = run.scene
+        if not any(body.motion == "pivot" for body in scene.bodies):
+            return None
+        hanging = "and there is no gravity" if not any(scene.gravity) else "and none that is not driven hangs beside its pivot"
+        return f"no amplitude and rate: no body has a spring, {hanging}"
     if only_presses(run.scene) and not _passages(run, found):
         return None
     what = "rate" if numbers["amplitude_deg"] is not None or not found.angular else "amplitude and rate"
     if numbers["rate_s_per_d"] is not None:
         return f"no amplitude in degrees: {found.body} slides"
     return f"no {what}: {_missing(run, found, start)}"
-
-
-def _nothing_swings(run: Trajectory) -> str | None:
-    scene = run.scene
-    if not any(body.motion == "pivot" for body in scene.bodies):
-        return None
-    hanging = "and there is no gravity" if not any(scene.gravity) else "and none that is not driven hangs beside its pivot"
-    return f"no amplitude and rate: no body has a spring, {hanging}"
 
 
 def _passages(run: Trajectory, found: Beats) -> int:
@@ -124,7 +120,11 @@ def missed_beats(run: Trajectory, wheel: str, found: Beats) -> int | None:
     moved = advance(run, wheel, found)
     if moved is None:
         return None
-    only = _giving(moved)
+    # 0 or 1: only the half swings of that parity give the wheel a step, of a whole pitch; None where all of them do.
+    single = np.diff(moved.half_swings) == 1.0
+    steps, parity = np.rint(moved.steps[single]), moved.half_swings[:-1][single] % 2.0
+    usual = [np.median(steps[parity == k]) if (parity == k).any() else np.nan for k in (0.0, 1.0)]
+    only = usual.index(2.0) if sorted(usual) == [0.0, 2.0] else None
     one = 1.0 if only is None else 2.0  # half pitches
     due = np.diff(moved.half_swings) if only is None else 2.0 * np.diff(_of_parity(moved.half_swings, only))
     missed = float(np.abs(np.rint(moved.steps) - due).sum()) / one
@@ -132,14 +132,6 @@ def missed_beats(run: Trajectory, wheel: str, found: Beats) -> int | None:
         before = abs(np.rint(moved.angle[0] / moved.half_pitch) - (moved.half_swings[0] + 1.0))
         missed += max(0.0, before - one) / one
     return int(missed)
-
-
-def _giving(moved: Advance) -> int | None:
-    """0 or 1: only the half swings of that parity give the wheel a step, of a whole pitch; None where all of them do."""
-    single = np.diff(moved.half_swings) == 1.0
-    steps, parity = np.rint(moved.steps[single]), moved.half_swings[:-1][single] % 2.0
-    usual = [np.median(steps[parity == k]) if (parity == k).any() else np.nan for k in (0.0, 1.0)]
-    return usual.index(2.0) if sorted(usual) == [0.0, 2.0] else None
 
 
 def _of_parity(half_swings: Array, parity: int) -> Array:

@@ -297,7 +297,9 @@ def _pivots(
 ) -> Iterator[tuple[str, Array_of_trajectory]]:
     """What the bearings in the movement take: change of momentum less weight less contacts, of a body with all it carries."""
     hung, weighed, _ = loads(run.scene.bodies)
-    on_a, on_b = _bodies_of(compiled, loads_found.ids)
+    # The bodies of the model on both sides of each contact.
+    contacts, primitives = compiled.model.contacts[loads_found.ids], compiled.model.primitives
+    (on_a, on_b) = primitives.body[contacts.a], primitives.body[contacts.b]
     for i, (body, ride, load) in enumerate(zip(run.scene.bodies, hung, weighed, strict=True)):
         if body.motion != "pivot" or ride.host >= 0:
             continue
@@ -321,9 +323,3 @@ def _drives(
         if body.prescribed is not None:
             j = compiled.slices[body.name].start
             yield body.name, mass * a[:, j] - load[:, j]
-
-
-def _bodies_of(compiled: Compiled, pairs: NDArray[np.int64]) -> tuple[Array_of_trajectory, Array_of_trajectory]:
-    """The bodies of the model on both sides of each contact."""
-    contacts, primitives = compiled.model.contacts[pairs], compiled.model.primitives
-    return primitives.body[contacts.a], primitives.body[contacts.b]

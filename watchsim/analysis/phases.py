@@ -201,14 +201,7 @@ def anchor_marks(
 RECOIL = 1e-3  # of the wheel's advance in a beat: a wheel that turns back less is led by a dead-beat anchor
 
 
-def anchor_phases(
-    run: Trajectory, parts: Roles, found: Beats, contacts: WheelContacts, within: NDArray[np.bool_], size: int
-) -> Iterator[Stretches]:
-    """Those of `size` beats at a time: of the beats `within`."""
-    return gathered(_beats(run, parts, found, contacts, within), size)
-
-
-def _beats(
+def _anchor_beats(
     run: Trajectory, parts: Roles, found: Beats, contacts: WheelContacts, within: NDArray[np.bool_]
 ) -> Iterator[list[Stretch]]:
     """The phases of one beat after the other."""
@@ -248,17 +241,8 @@ def _next_ones(marks: list[Marks | None], told: NDArray[np.bool_]) -> Iterator[M
 # wheel turns back until the oscillator turns (recoil) and then pushes by the same pallet, until the other one catches and
 # lets the first go (impulse).
 
-TOUCH_HINGED_PHASES = (EventKind.IMPACT, EventKind.CLOSE)
 
-
-def hinged_phases(
-    run: Trajectory, wheel: str, pallets: Sequence[str], found: Beats, within: NDArray[np.bool_], size: int
-) -> Iterator[Stretches]:
-    """Those of `size` beats at a time: of the beats `within`."""
-    return gathered(_beats_hinged_phases(run, wheel, pallets, found, within), size)
-
-
-def _beats_hinged_phases(
+def _hinged_beats(
     run: Trajectory, wheel: str, pallets: Sequence[str], found: Beats, within: NDArray[np.bool_]
 ) -> Iterator[list[Stretch]]:
     """The impulse of each half swing and the recoil that follows.
@@ -287,7 +271,7 @@ def _beats_hinged_phases(
 
 def _catches(run: Trajectory, wheel: str, pallets: Sequence[str]) -> tuple[Array, NDArray[np.int64]]:
     """When a tooth met a pallet, and the number of the pallet."""
-    own = [contact_columns(run, between(wheel, {name}), ["t"], *TOUCH_HINGED_PHASES)[0] for name in pallets]
+    own = [contact_columns(run, between(wheel, {name}), ["t"], *TOUCH)[0] for name in pallets]
     times = np.concatenate(own)
     which = np.repeat(np.arange(len(own)), [len(one) for one in own])
     order = np.argsort(times, kind="stable")
@@ -514,10 +498,10 @@ def _stretches(run: Trajectory, parts: Roles, found: Beats, within: NDArray[np.b
     """Of the beats within."""
     assert parts.wheel
     if pallets := hinged_pallets(run.scene):
-        return hinged_phases(run, parts.wheel, pallets, found, within, AT_ONCE_PHASES)
+        return gathered(_hinged_beats(run, parts.wheel, pallets, found, within), AT_ONCE_PHASES)
     contacts = wheel_contacts(run, parts, found, within)
     if parts.lever == parts.oscillator:
-        return anchor_phases(run, parts, found, contacts, within, AT_ONCE_PHASES)
+        return gathered(_anchor_beats(run, parts, found, contacts, within), AT_ONCE_PHASES)
     told = np.flatnonzero(within & _told(run, found))
     ways = (progress(run, parts.wheel, found.tick[told]), progress(run, parts.wheel, found.end[told]))
     return lever_phases(found, contacts, told, ways, AT_ONCE_PHASES)

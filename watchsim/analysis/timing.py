@@ -298,7 +298,8 @@ def beats(run: Trajectory, body: str | None = None) -> Beats:
     name = _swinging(run, body)
     period, angular = nominal_period(run, name), run.scene.body(name).motion == "pivot"
     index = [one.name for one in run.scene.bodies].index(name)
-    since = _unbroken_since(run)
+    # From when on (s) all events are there: where a recording has gaps, from the last of them.
+    since = run.spans[-1][0] if run.keep == STATISTICS and run.spans else -math.inf
     own = rows_where(run.events, lambda part: (part["body"] == index) & (part["t"] >= since))
     crossings, turns = own[own["kind"] == EventKind.CROSS], own[own["kind"] == EventKind.TURN]
     complete, before, after = half_swings(crossings, turns)
@@ -328,11 +329,6 @@ def beats_within(found: Beats, window: Sequence[float]) -> Beats:
     columns = ((field.name, getattr(found, field.name)) for field in fields(found))
     cut: dict[str, Any] = {name: values[own] for name, values in columns if isinstance(values, np.ndarray)}
     return replace(found, before=found.before + own.start, **cut)
-
-
-def _unbroken_since(run: Trajectory) -> float:
-    """From when on (s) all events are there: where a recording has gaps, from the last of them."""
-    return run.spans[-1][0] if run.keep == STATISTICS and run.spans else -math.inf
 
 
 def _swinging(run: Trajectory, body: str | None) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 
 from watchsim.analysis.timing import pitch
 from watchsim.analysis.watch import Teeth, teeth
-from watchsim.escapement.by_hand import LEVEL, SLACK, Hands, LetOff, Parts, Rest, Stretch, Sweep, Wheel, parts_of
+from watchsim.escapement.by_hand import LEVEL, SLACK, Hands, Parts, Rest, Stretch, Sweep, Wheel, parts_of
 from watchsim.escapement.fork_and_pin import Balance, Direct, Entry, Fork, NotMeasured, Passage, Safety, fork, safety
 from watchsim.escapement.impulses import Impulse, Pallet, Roller, impulse, pallet
 from watchsim.mechanism.compile import Compiled, compile_scene
@@ -75,19 +75,7 @@ def _direct_passage(
 
 def _passage(wheel: Wheel, sweep: Sweep, side: float, tooth: int) -> Passage:
     locked = _locking(sweep.stretches)
-    let_off = _last_let_off(wheel, sweep)
-    caught = sweep.let_offs[0].landed if len(sweep.let_offs) > 1 else None
-    unlocked = sweep.let_offs[0].last if caught else locked[-1].last if locked else sweep.stretches[0].first
-    last = next(i for i, stretch in enumerate(sweep.stretches) if stretch.last == let_off.last)
-    assert let_off.landed is not None
-    driven = sweep.stretches[len(locked) : last + 1]
-    room = sweep.room[len(locked)] if locked else sweep.room[0]
-    end = sweep.stretches[-1].last.lever
-    return Passage(tooth, side, sweep.stretches[0].first, unlocked, let_off.last, let_off.landed, end, driven, room, caught)
-
-
-def _last_let_off(wheel: Wheel, sweep: Sweep) -> LetOff:
-    """The one by which the wheel drops to the lock; before it, it may have run after an impulse stone."""
+    # The one by which the wheel drops to the lock; before it, it may have run after an impulse stone.
     let_offs = sweep.let_offs
     if not let_offs:
         raise NotMeasured("the lever reaches its other bank before the tooth is let off")
@@ -98,7 +86,15 @@ def _last_let_off(wheel: Wheel, sweep: Sweep) -> LetOff:
     advance = wheel.parts.way * (landed.wheel - let_offs[0].last.wheel)
     if len(let_offs) > 2 or (len(let_offs) == 2 and advance > MOST * wheel.pitch):
         raise NotMeasured("more than one tooth is let off in a beat: the wheel trips")
-    return let_offs[-1]
+    let_off = let_offs[-1]
+    caught = sweep.let_offs[0].landed if len(sweep.let_offs) > 1 else None
+    unlocked = sweep.let_offs[0].last if caught else locked[-1].last if locked else sweep.stretches[0].first
+    last = next(i for i, stretch in enumerate(sweep.stretches) if stretch.last == let_off.last)
+    assert let_off.landed is not None
+    driven = sweep.stretches[len(locked) : last + 1]
+    room = sweep.room[len(locked)] if locked else sweep.room[0]
+    end = sweep.stretches[-1].last.lever
+    return Passage(tooth, side, sweep.stretches[0].first, unlocked, let_off.last, let_off.landed, end, driven, room, caught)
 
 
 def _locking(stretches: Sequence[Stretch]) -> Sequence[Stretch]:

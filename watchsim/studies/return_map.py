@@ -195,22 +195,18 @@ def fixed_point(oscillate: Callable[[float], Return], start: float) -> Fixed | L
             return best
         below, above = (here, above) if g > 0.0 else (below, here)
         old, g_old = here, g
-        here = _next(here, g, slope, below, above, bad)
+        # Newton's step; within the bracket, no further than half the amplitude, and on the good side of what went wrong.
+        step = g / (1.0 - slope) if slope < 1.0 else (FARTHEST * here if g > 0.0 else -FARTHEST * here)
+        step = max(-FARTHEST * here, min(FARTHEST * here, step))
+        new = here + step
+        if below is not None and above is not None and not min(below, above) < new < max(below, above):
+            new = 0.5 * (below + above)
+        if bad is not None and (bad - here) * (bad - new) <= 0.0:
+            new = 0.5 * (here + bad)
+        here = new
         if here < LEAST * start:
             return Lost(here, UNSETTLED, False)
     return best if abs(best.residual) <= ENOUGH * start else Lost(here, UNSETTLED, g_old > 0.0)
-
-
-def _next(here: float, g: float, slope: float, below: float | None, above: float | None, bad: float | None) -> float:
-    """Newton's step; within the bracket, no further than half the amplitude, and on the good side of what went wrong."""
-    step = g / (1.0 - slope) if slope < 1.0 else (FARTHEST * here if g > 0.0 else -FARTHEST * here)
-    step = max(-FARTHEST * here, min(FARTHEST * here, step))
-    new = here + step
-    if below is not None and above is not None and not min(below, above) < new < max(below, above):
-        new = 0.5 * (below + above)
-    if bad is not None and (bad - here) * (bad - new) <= 0.0:
-        new = 0.5 * (here + bad)
-    return new
 
 
 # An orbit is followed without taking it up anew, and its turning points are compared with those 1, 2, 3, … oscillations

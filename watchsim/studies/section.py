@@ -320,7 +320,15 @@ def section_from(loop: Loop, parts: Parts, turning: State) -> Section | None:
     state = copied(turning)
     away = float(state.q[parts.coordinate]) - parts.level
     side, touching = 1.0 if away > 0.0 else -1.0, is_touched(parts, state)
-    _begin_anew(state, parts, side)
+    # Time 0, the oscillator at rest for an instant, nothing counted yet.
+    i = parts.coordinate
+    state.clock.event -= state.clock.time
+    state.clock.time = 0.0
+    state.u[i] = 0.0
+    state.side_u[i], state.side_q[i] = -side, side
+    state.now.event_waits, state.now.touched = 1, NO_CONTACT  # which way dry friction in its bearing acts is decided anew
+    anew = arrays_of(state)
+    anew.sums[:], anew.counts[:], anew.worst[:] = 0.0, 0, 0.0
     if touching:
         state.u[:] = 0.0
     return Section(state, side, abs(away), touching)
@@ -336,16 +344,3 @@ def others_rest(loop: Loop, parts: Parts, state: State) -> bool:
     speeds = np.abs(state.u) * loop.options.size / loop.compiled.model.coordinates.scale
     speeds[parts.coordinate] = 0.0
     return bool((speeds <= loop.options.speed_zero).all())
-
-
-def _begin_anew(state: State, parts: Parts, side: float) -> None:
-    """Time 0, the oscillator at rest for an instant, nothing counted yet."""
-    i = parts.coordinate
-    state.clock.event -= state.clock.time
-    state.clock.time = 0.0
-    state.u[i] = 0.0
-    state.side_u[i], state.side_q[i] = -side, side
-    # Which way dry friction in its bearing acts is decided anew.
-    state.instant.event_waits, state.instant.touched = 1, NO_CONTACT
-    anew = arrays_of(state)
-    anew.sums[:], anew.counts[:], anew.worst[:] = 0.0, 0, 0.0

@@ -69,15 +69,15 @@ def swings() -> list[Benchmark]:
 
 
 def _incline_checks(case: Incline) -> tuple[Check, ...]:
-    checks = [Check("accumulation of the bounces [s]", case.accumulation, _value(EventKind.ACCUMULATION, 1), INCLINE_EXACT)]
+    checks = [Check("accumulation of the bounces [s]", case.accumulation, value_of(EventKind.ACCUMULATION, 1), INCLINE_EXACT)]
     if case.accumulation < case.rolling_begins < math.inf:
-        checks.append(Check("rolling begins [s]", case.rolling_begins, _time(EventKind.STICK, -1), INCLINE_EXACT))
+        checks.append(Check("rolling begins [s]", case.rolling_begins, time_of(EventKind.STICK, -1), INCLINE_EXACT))
     for t in INCLINE_TIMES:
         state = incline_state(case, t)
         checks += [
-            Check(f"x at {t:g} s [m]", state.x, _coordinate(0, t), INCLINE_EXACT),
-            Check(f"angle at {t:g} s [rad]", state.angle, _coordinate(2, t), INCLINE_EXACT),
-            Check(f"spin at {t:g} s [rad/s]", state.spin, _rate(2, t), INCLINE_EXACT),
+            Check(f"x at {t:g} s [m]", state.x, coordinate(0, t), INCLINE_EXACT),
+            Check(f"angle at {t:g} s [rad]", state.angle, coordinate(2, t), INCLINE_EXACT),
+            Check(f"spin at {t:g} s [rad/s]", state.spin, rate(2, t), INCLINE_EXACT),
         ]
     return (*checks, Check("energy lost [J]", _energy_lost(case, INCLINE_TIMES[-1]), _dissipated), *soundness())
 
@@ -102,8 +102,8 @@ def _damped_balance() -> Benchmark:
     )
     turn = turning_time(case, 12)
     checks = [
-        Check("twelfth turning point [s]", turn, _time(EventKind.TURN, 12)),
-        Check("angle there [rad]", damped_state(case, turn)[0], _value(EventKind.TURN, 12)),
+        Check("twelfth turning point [s]", turn, time_of(EventKind.TURN, 12)),
+        Check("angle there [rad]", damped_state(case, turn)[0], value_of(EventKind.TURN, 12)),
         *_state_checks(damped_state(case, scene.duration), scene.duration),
         *_state_checks(damped_state(case, 0.77), 0.77, BETWEEN_ROWS),
     ]
@@ -129,7 +129,7 @@ def _pendulum_against_stop(length: float = 0.02, bob: float = 0.002, gravity: fl
         tolerance=1e-11,
     )
     checks = [
-        *(Check(f"touch {k} [s]", touch_times(case, k)[-1], _time(EventKind.IMPACT, k)) for k in (1, 3, 6)),
+        *(Check(f"touch {k} [s]", touch_times(case, k)[-1], time_of(EventKind.IMPACT, k)) for k in (1, 3, 6)),
         *_state_checks(stopped_state(case, scene.duration), scene.duration),
         *_state_checks(stopped_state(case, 0.05), 0.05, BETWEEN_ROWS),
     ]
@@ -140,8 +140,8 @@ def _pendulum_against_stop(length: float = 0.02, bob: float = 0.002, gravity: fl
 def _state_checks(state: tuple[float, float], t: float, tolerance: float = TOLERANCE) -> tuple[Check, ...]:
     """Angle and rate of the only moving body at time t."""
     return (
-        Check(f"angle at {t:g} s [rad]", state[0], _coordinate(0, t), tolerance),
-        Check(f"rate at {t:g} s [rad/s]", state[1], _rate(0, t), tolerance),
+        Check(f"angle at {t:g} s [rad]", state[0], coordinate(0, t), tolerance),
+        Check(f"rate at {t:g} s [rad/s]", state[1], rate(0, t), tolerance),
     )
 
 
@@ -155,11 +155,11 @@ def soundness(ledger: float = 1e-8) -> tuple[Check, ...]:
     )
 
 
-def _coordinate(column: int, t: float) -> Measure:
+def coordinate(column: int, t: float) -> Measure:
     return lambda run: float(run.at(t)[0][column])
 
 
-def _rate(column: int, t: float) -> Measure:
+def rate(column: int, t: float) -> Measure:
     return lambda run: float(run.at(t)[1][column])
 
 
@@ -167,18 +167,18 @@ def _dissipated(run: Trajectory) -> float:
     return float(sum(run.energy["dissipated"].values()))
 
 
-def _time(kind: EventKind, number: int) -> Measure:
+def time_of(kind: EventKind, number: int) -> Measure:
     """Time of the `number`-th event of a kind, counted from 1; -1 is the last."""
     return lambda run: picked(run, kind, "t", number)
 
 
-def _value(kind: EventKind, number: int) -> Measure:
+def value_of(kind: EventKind, number: int) -> Measure:
     return lambda run: picked(run, kind, "value", number)
 
 
-def counted(run: Trajectory, kind: EventKind) -> int:
-    """Number of events of a kind."""
-    return int((run.events["kind"] == kind).sum())
+def count_of(kind: EventKind, until: float = math.inf) -> Measure:
+    """Number of events of a kind up to the time `until` (s)."""
+    return lambda run: float(((run.events["kind"] == kind) & (run.events["t"] <= until)).sum())
 
 
 def picked(run: Trajectory, kind: EventKind, column: str, number: int) -> float:

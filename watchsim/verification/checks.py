@@ -94,7 +94,10 @@ def incline_state(case: Incline, t: float) -> DiscState:
     """The disc at time `t` (s) after its release."""
     if t >= case.accumulation:
         return _on_the_plane(case, t)
-    count = _impacts_before(case, t)
+    # Number of impacts up to and including time t < accumulation.
+    count = 0
+    while _impact_time(case, count + 1) <= t:
+        count += 1
     taken, moment = _friction_sums(case, count, t)
     y, v_y = _height(case, count, t)
     share = case.kappa / (1.0 + case.kappa)
@@ -113,14 +116,6 @@ def _impact_time(case: Incline, k: float) -> float:
     """Of the k-th impact, counted from 1; inf: where they accumulate."""
     e = case.restitution
     return case.first_impact * (1.0 + 2.0 * e * (1.0 - e ** (k - 1)) / (1.0 - e))
-
-
-def _impacts_before(case: Incline, t: float) -> int:
-    """Number of impacts up to and including time t < accumulation."""
-    count = 0
-    while _impact_time(case, count + 1) <= t:
-        count += 1
-    return count
 
 
 def _multiples(case: Incline) -> tuple[float, float]:

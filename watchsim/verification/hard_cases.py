@@ -15,7 +15,7 @@ from watchsim.scene.forces import Contact, Damping, Side, Spring, Torque
 from watchsim.scene.scene import Body, Scene
 from watchsim.simulation.state import EventKind
 from watchsim.simulation.trajectory import Trajectory
-from watchsim.verification.benchmarks import Benchmark, Check, Measure, counted
+from watchsim.verification.benchmarks import Benchmark, Check, Measure, coordinate, count_of, rate, time_of, value_of
 from watchsim.verification.checks import box, circle, ground, polygon, shaped
 
 GRAVITY = 9.81
@@ -41,21 +41,16 @@ def graze(nanometres: float) -> Benchmark:
     post = Body("post", "fixed", loops=(circle(radius),))
     scene = Scene("graze", (shaped(body, circle(pin)), post), contacts=(Contact((Side("pin"), Side("post"))),), duration=0.04)
     touches = nanometres < 0.0
-    checks = [Check("impacts", float(touches), lambda run: float(counted(run, EventKind.IMPACT)), 0.0)]
+    checks = [Check("impacts", float(touches), count_of(EventKind.IMPACT), 0.0)]
     if touches:
         approach = -speed * math.sqrt(-2.0 * clearance / reach)
-        checks.append(Check("approach [m/s]", approach, lambda run: float(_impact(run, "value")), 1e-3))
+        checks.append(Check("approach [m/s]", approach, value_of(EventKind.IMPACT, 1), 1e-3))
         when = 0.02 - math.sqrt(-2.0 * reach * clearance) / speed
-        checks.append(Check("time of the touch [s]", when, lambda run: float(_impact(run, "t")), 1e-7))
+        checks.append(Check("time of the touch [s]", when, time_of(EventKind.IMPACT, 1), 1e-7))
     else:
         checks.append(Check("height at the end [m]", reach + clearance, lambda run: float(run.q[-1, 1]), 0.0))
     checks.append(Check("nearest to the post, below touching [m]", 0.0, lambda run: max(0.0, reach - _nearest(run)), 1e-15))
     return Benchmark(f"graze, gap {nanometres:+g} nm", scene, tuple(checks), "two circles and a straight line")
-
-
-def _impact(run: Trajectory, column: str) -> float:
-    found = run.events[run.events["kind"] == EventKind.IMPACT]
-    return float(found[column][0]) if len(found) else math.nan
 
 
 def _nearest(run: Trajectory) -> float:
@@ -110,8 +105,8 @@ def standing(count: int) -> Benchmark:
     contacts = tuple(Contact((Side(one), Side(other)), 0.4, 0.5) for one, other in pairs)
     scene = Scene("standing", (*bodies, ground()), contacts=contacts, gravity=(0.0, -GRAVITY), duration=1.0)
     checks = (
-        Check("impacts", 0.0, lambda run: float(counted(run, EventKind.IMPACT)), 0.0),
-        Check("contacts found", float(count), lambda run: float(counted(run, EventKind.CLOSE)), 0.0),
+        Check("impacts", 0.0, count_of(EventKind.IMPACT), 0.0),
+        Check("contacts found", float(count), count_of(EventKind.CLOSE), 0.0),
         Check("largest way in a second [m]", 0.0, lambda run: float(np.abs(run.q[-1] - run.q[0]).max()), 1e-12),
     )
     return Benchmark(f"start at rest on {count} contacts", scene, checks, "statics")
@@ -146,9 +141,9 @@ def superball(radius: float = 0.02, drop: float = 0.1, speed: float = 0.4, spin:
         t = 2.0 * touches * fall  # at the top of the following bounce
         travel = fall * (speeds[0] + sum(2.0 * speeds[k % 2] for k in range(1, touches)) + speeds[touches % 2])
         checks += [
-            Check(f"spin after touch {touches} [rad/s]", spins[touches % 2], _rate(2, t), EXACT),
-            Check(f"speed after touch {touches} [m/s]", speeds[touches % 2], _rate(0, t), EXACT),
-            Check(f"x at the top after touch {touches} [m]", travel, _coordinate(0, t), 1e-9),
+            Check(f"spin after touch {touches} [rad/s]", spins[touches % 2], rate(2, t), EXACT),
+            Check(f"speed after touch {touches} [m/s]", speeds[touches % 2], rate(0, t), EXACT),
+            Check(f"x at the top after touch {touches} [m]", travel, coordinate(0, t), 1e-9),
         ]
     energy = 0.5 * (speed**2 + kappa * (radius * spin) ** 2) + GRAVITY * drop
     checks.append(Check("share of the energy lost", 0.0, lambda run: run.energy["dissipated"]["impacts"] / energy, 1e-12))
@@ -176,9 +171,9 @@ def dry_balance(friction: float = 2e-7, stiffness: float = 7.58e-7, angle: float
     final = (-1.0) ** swings * (angle - swings * lost)
     spent = 0.5 * stiffness * (angle**2 - final**2)
     checks = (
-        Check("third turning point [s]", 3.0 * half, _event(EventKind.TURN, "t", 3), EXACT),
-        Check("angle there [rad]", -(angle - 3.0 * lost), _event(EventKind.TURN, "value", 3), EXACT),
-        Check("turning points but the last", float(swings - 1), _count(EventKind.TURN), 0.0),
+        Check("third turning point [s]", 3.0 * half, time_of(EventKind.TURN, 3), EXACT),
+        Check("angle there [rad]", -(angle - 3.0 * lost), value_of(EventKind.TURN, 3), EXACT),
+        Check("turning points but the last", float(swings - 1), count_of(EventKind.TURN), 0.0),
         Check("angle at which it stays [rad]", final, lambda run: float(run.q[-1, 0]), EXACT),
         Check("rate there [rad/s]", 0.0, lambda run: float(run.u[-1, 0]), 0.0),
         Check("energy taken by the bearings [J]", spent, lambda run: run.energy["dissipated"]["damping"], EXACT),
@@ -199,10 +194,10 @@ def friction_angle(slope: float = 0.3, side: float = 0.1) -> list[Benchmark]:
         pull = GRAVITY * math.cos(slope) * math.tan(slope) * 1e-6 if word == "below" else 0.0
         t = scene.duration if word != "below" else 100.0
         # The difference of two accelerations a million times larger than it is.
-        checks = [Check(f"way down at {t:g} s [m]", 0.5 * pull * t**2, _coordinate(0, t), 1e-8)]
-        checks.append(Check(f"height at {t:g} s [m]", side, _coordinate(1, t), EXACT))
-        checks.append(Check(f"tilt at {t:g} s [rad]", 0.0, _coordinate(2, t), EXACT))
-        checks.append(Check("impacts", 0.0, _count(EventKind.IMPACT), 0.0))
+        checks = [Check(f"way down at {t:g} s [m]", 0.5 * pull * t**2, coordinate(0, t), 1e-8)]
+        checks.append(Check(f"height at {t:g} s [m]", side, coordinate(1, t), EXACT))
+        checks.append(Check(f"tilt at {t:g} s [rad]", 0.0, coordinate(2, t), EXACT))
+        checks.append(Check("impacts", 0.0, count_of(EventKind.IMPACT), 0.0))
         cases.append(Benchmark(f"block on an incline, friction {word} the limit", scene, tuple(checks), "statics, g"))
     return cases
 
@@ -221,8 +216,8 @@ def painleve_rods(half: float = 0.1, friction: float = 1.6, speed: float = 2.0) 
         jams = low < angle < high
         spin = 0.75 * speed / half * math.sin(angle) if jams else 0.0
         checks = [
-            Check("jams at the start", float(jams), _count(EventKind.JAM, 0.0), 0.0),
-            Check("spin right after the start [rad/s]", spin, _rate(2, 0.0), EXACT),
+            Check("jams at the start", float(jams), count_of(EventKind.JAM, 0.0), 0.0),
+            Check("spin right after the start [rad/s]", spin, rate(2, 0.0), EXACT),
             Check("speed of the tip right after it [m/s]", 0.0 if jams else -speed, _tip_speed(half), EXACT),
         ]
         cases.append(
@@ -279,9 +274,9 @@ def pins_on_rollers(friction: float = 0.2, radius: float = 2e-3, arm: float = 3e
         )
         left = 0.0 if jams else spin - friction * force * radius / inertia * t
         checks = (
-            Check("jams", float(jams), _count(EventKind.JAM), 0.0),
-            Check(f"spin of the roller at {t:g} s [rad/s]", left, _rate(0, t), EXACT),
-            Check("rate of the arm [rad/s]", 0.0, _rate(1, t), EXACT),
+            Check("jams", float(jams), count_of(EventKind.JAM), 0.0),
+            Check(f"spin of the roller at {t:g} s [rad/s]", left, rate(0, t), EXACT),
+            Check("rate of the arm [rad/s]", 0.0, rate(1, t), EXACT),
         )
         name = f"pin on a roller, {word} the limit of jamming"
         cases.append(Benchmark(name, scene, checks, "moments about both pivots; derived in verification/hard_cases.py"))
@@ -323,26 +318,3 @@ def wedges(half_angle: float = 0.2, size: float = 0.05, speed: float = 1.0, rest
         name = f"wedge in a slot, friction {word} the limit"
         cases.append(Benchmark(name, scene, tuple(checks), "statics of the friction cone"))
     return cases
-
-
-def _coordinate(column: int, t: float) -> Measure:
-    return lambda run: float(run.at(t)[0][column])
-
-
-def _rate(column: int, t: float) -> Measure:
-    return lambda run: float(run.at(t)[1][column])
-
-
-def _event(kind: EventKind, column: str, number: int) -> Measure:
-    """Of the `number`-th event of a kind, counted from 1; nan where there are fewer."""
-
-    def measure(run: Trajectory) -> float:
-        values = run.events[run.events["kind"] == kind][column]
-        return float(values[number - 1]) if len(values) >= number else math.nan
-
-    return measure
-
-
-def _count(kind: EventKind, until: float = math.inf) -> Measure:
-    """How many contacts had such an event up to the time `until`."""
-    return lambda run: float(((run.events["kind"] == kind) & (run.events["t"] <= until)).sum())

@@ -12,7 +12,7 @@ from watchsim.geometry.primitives import TURN, Arc, Line
 from watchsim.scene.forces import Contact, Side, Spring, Torque
 from watchsim.scene.scene import Body, Scene
 from watchsim.simulation.state import EventKind
-from watchsim.verification.benchmarks import Benchmark, Check, Measure, counted, picked, soundness
+from watchsim.verification.benchmarks import Benchmark, Check, Measure, count_of, soundness, time_of, value_of
 from watchsim.verification.checks import box, circle, ground
 
 GRAVITY = 9.81
@@ -53,7 +53,7 @@ def pulled_block(cycles: int = 40) -> Benchmark:
     )
     middle = start + (cycles - 0.5) * period
     checks = (
-        Check("slipping begins [s]", start, lambda run: picked(run, EventKind.SLIDE, "t", 1), FORCES),
+        Check("slipping begins [s]", start, time_of(EventKind.SLIDE, 1), FORCES),
         Check(f"way after {cycles} periods [m]", speed * cycles * period, lambda run: float(run.q[-1, 0])),
         Check("speed then [m/s]", 0.0, lambda run: float(run.u[-1, 0]), SPEEDS),
         Check("fastest slip [m/s]", 2.0 * speed, lambda run: float(run.at(middle)[1][0])),
@@ -108,7 +108,7 @@ def rocking_block(impacts: int = 7000) -> Benchmark:
         return Check(
             f"approach of the corner at impact {number} [m/s]",
             -2.0 * half_width * spin * ratio ** (number - 1),
-            lambda run: picked(run, EventKind.IMPACT, "value", number),
+            value_of(EventKind.IMPACT, number),
             tolerance,
         )
 
@@ -157,7 +157,7 @@ def cradle(split: float) -> Benchmark:
     wanted = (-0.6, 0.4, 0.4, 0.4, 0.4) if split == 0.0 else (0.0, 0.0, 0.0, 0.0, 1.0)
     checks = tuple(Check(f"speed of ball {i + 1} [m/s]", v, _last_speed(i), 1e-12) for i, v in enumerate(wanted))
     name = "Newton's cradle, touching" if split == 0.0 else f"Newton's cradle, gaps of {1e9 * split:g} nm"
-    impacts = Check("impulses", 4.0, lambda run: float(counted(run, EventKind.IMPACT)), 0.0)
+    impacts = Check("impulses", 4.0, count_of(EventKind.IMPACT), 0.0)
     kept = Check("energy residual [J]", 0.0, lambda run: float(run.energy["residual_J"]), 1e-15)
     return Benchmark(name, scene, (*checks, impacts, kept), "Poisson's law by hand, watchsim/verification/repeated_impacts.py")
 
@@ -197,15 +197,15 @@ def groove() -> Benchmark:
     # The k-th rebound lasts 2 t1 e^k; the rule ends the bouncing where less than a microsecond is left.
     most = 2.0 * (2.0 + math.log(1e-6 * (1.0 - restitution) / (2.0 * first)) / math.log(restitution))
     checks = (
-        Check("first touch [s]", first, lambda run: picked(run, EventKind.IMPACT, "t", 1)),
+        Check("first touch [s]", first, time_of(EventKind.IMPACT, 1)),
         Check(
             "end of the bouncing [s]",
             first * (1.0 + restitution) / (1.0 - restitution),
-            lambda run: picked(run, EventKind.ACCUMULATION, "value", 1),
+            value_of(EventKind.ACCUMULATION, 1),
         ),
         Check("height at the end [m]", bottom, lambda run: float(run.q[-1, 1])),
         Check("sideways at the end [m]", 0.0, lambda run: float(run.q[-1, 0]), 1e-12),
-        Check("impulses beyond the most there may be", 0.0, lambda run: max(0.0, counted(run, EventKind.IMPACT) - most), 0.0),
+        Check("impulses beyond the most there may be", 0.0, lambda run: max(0.0, count_of(EventKind.IMPACT)(run) - most), 0.0),
     )
     return Benchmark(
         "disc in a groove, two contacts at once", scene, (*checks, *soundness()), "geometric series, repeated_impacts.py"
