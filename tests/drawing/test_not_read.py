@@ -57,3 +57,12 @@ def test_elements_of_an_svg_file(kinds: str, severity: str, why: str, read_svg: 
         drawing = read_svg(s.svg('<circle r="1"/>' + 2 * f"<{kind}/>"))
         assert ignored(drawing) == [(severity, f"2 × {kind[:40]} not read: {why}", "")]
         assert drawing.ignored == {kind: 2} and len(drawing.loops) == 1
+
+
+@pytest.mark.parametrize(("x", "left_out"), [("5%", 1), ("0%", 0), ("5", 0)])
+def test_a_part_of_a_page_without_a_size_is_no_length(x: str, left_out: int, read_svg: Reader) -> None:
+    """Nothing of it is still nothing."""
+    drawing = read_svg(s.svg(f'<circle cy="3" r="2"/><circle cx="{x}" cy="9" r="1"/>', ""))
+    said = [one.message for one in drawing.findings if one.code == "damaged"]
+    assert len(said) == left_out and len(drawing.loops) == 2 - left_out
+    assert all(f'"{x}" is a part of a page whose size is not given' in one for one in said)
