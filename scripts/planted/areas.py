@@ -46,6 +46,10 @@ AREAS = {  # name -> (files, tests)
         ),
         ("tests/render", RECORDS),
     ),
+    "studies": (
+        ("studies/*.py", "escapement/*.py", "construction/*.py"),
+        ("tests/studies", "tests/escapement", "tests/construction", "tests/turning", "tests/proposal", RECORDS),
+    ),
     "plain": (
         ("dynamics/**/*.py", "contact/*.py", "simulation/**/*.py", "tolerances.py"),
         ("tests/dynamics", "tests/candidates", "tests/contact", "tests/simulation", QUOTED),
