@@ -326,7 +326,8 @@ def section_from(loop: Loop, parts: Parts, turning: State) -> Section | None:
     state.clock.time = 0.0
     state.u[i] = 0.0
     state.side_u[i], state.side_q[i] = -side, side
-    state.now.event_waits, state.now.touched = 1, NO_CONTACT  # which way dry friction in its bearing acts is decided anew
+    # Which way dry friction in its bearing acts is decided anew.
+    state.instant.event_waits, state.instant.touched = 1, NO_CONTACT
     anew = arrays_of(state)
     anew.sums[:], anew.counts[:], anew.worst[:] = 0.0, 0, 0.0
     if touching:
