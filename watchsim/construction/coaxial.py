@@ -284,7 +284,9 @@ def guard_pin(fork: Fork) -> Loop:
     """The guard: a round foot, a bar and a rounded point."""
     s = fork.scale
     foot = (fork.points.lever_to_balance - GUARD_FOOT * s, GUARD_FOOT_RADIUS * s)
-    return guard("GUARD", fork.guard_centre(), GUARD_TIP * s, GUARD_HALF * s, GUARD_SLOPE, foot, 0.025 * s)
+    tip, half, slope = GUARD_TIP * s, GUARD_HALF * s, GUARD_SLOPE
+    drop = (half - tip * cosine(slope)) * cosine(slope) / sine(slope)
+    return guard("GUARD", fork.guard_centre(), tip, half, slope, drop, foot, 0.025 * s)
 
 
 # What is the outline of a co-axial escapement's lever?

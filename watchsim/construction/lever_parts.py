@@ -44,11 +44,16 @@ def safety_roller(radius: float, depth: float, half_opening: float, edge: float)
     return filleted("SAFETY", [(arc_between(right, left, (0.0, 0.0), True), edge), (back, edge)])
 
 
-def guard(layer: str, y: float, tip: float, half: float, slope: float, foot: tuple[float, float], fillet: float) -> Loop:
-    """A round foot (height of its centre, radius), a bar of half width `half`, and a point rounded by `tip` about (0, y)."""
+def guard(
+    layer: str, y: float, tip: float, half: float, slope: float, drop: float, foot: tuple[float, float], fillet: float
+) -> Loop:
+    """A round foot (height of its centre, radius), a bar of half width `half`, and a point rounded by `tip` about (0, y).
+
+    The point leans by `slope` (degrees) from the middle line, and is `drop` high from the bar to its rounding.
+    """
     left, right = polar(tip, 180.0 - slope, (0.0, y)), polar(tip, slope, (0.0, y))
     join = foot[0] + math.sqrt(foot[1] ** 2 - half**2)
-    shoulder = right[1] - (half - right[0]) / math.tan(math.radians(slope))
+    shoulder = right[1] - drop
     parts: list[tuple[Edge, float]] = [
         (arc_between((-half, join), (half, join), (0.0, foot[0]), True), fillet),
         (Line(half, join, half, shoulder), 0.0),

@@ -537,4 +537,6 @@ def dart(design: Swiss) -> Loop:
     """The guard of the safety action: a round foot, a bar and a rounded point."""
     scale = design.lever_scale
     foot = (DART_FOOT * scale - design.reach_beyond, DART_FOOT_RADIUS * scale)
-    return guard("DART", design.dart_centre, design.dart_tip, DART_HALF * scale, DART_SLOPE, foot, 0.03 * scale)
+    tip, half, slope = design.dart_tip, DART_HALF * scale, math.radians(DART_SLOPE)
+    drop = (half - tip * math.cos(slope)) / math.tan(slope)
+    return guard("DART", design.dart_centre, tip, half, DART_SLOPE, drop, foot, 0.03 * scale)
