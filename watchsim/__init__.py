@@ -3,8 +3,6 @@
 The names below are loaded when first used, so that importing the package costs nothing.
 """
 
-from __future__ import annotations
-
 TYPE_CHECKING = False  # as in typing: the package is loaded before a command can hear Ctrl-C, so it loads nothing
 if TYPE_CHECKING:
     from typing import Any
@@ -104,7 +102,7 @@ if TYPE_CHECKING:
     from watchsim.verification.verify import verify as verify
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> "Any":
     import importlib
 
     if name in _PACKAGES:

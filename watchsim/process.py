@@ -4,8 +4,6 @@ It hears signals before it loads anything, and when its command is done it is do
 taken apart can change the exit status any more.
 """
 
-from __future__ import annotations
-
 TYPE_CHECKING = False  # as in typing, whose import would leave Ctrl-C unheard for some milliseconds
 if TYPE_CHECKING:
     from typing import NoReturn
@@ -16,7 +14,7 @@ MMAP_THRESHOLD, TRIM_THRESHOLD = -3, -1  # of glibc's malloc.h
 HELD = {MMAP_THRESHOLD: 32 << 20, TRIM_THRESHOLD: 128 << 20}  # bytes
 
 
-def process() -> NoReturn:
+def process() -> "NoReturn":
     """Run the command line of this process, and end it."""
     import _signal as signal  # type: ignore[import-not-found]  # built in: nothing to load
 
