@@ -231,13 +231,12 @@ def test_times_may_carry_their_units() -> None:
 
 SCRIPT = """
 from watchsim.dynamics import acceleration, impact
-from watchsim.dynamics.lcp import LcpOutcome
-from watchsim.dynamics.lcp import Rung
+from watchsim.dynamics.lcp import LcpOutcome, Solver
 
 def unsolvable(work, m, elements):
     work.posed.lemke = LcpOutcome.RAY
-    work.rungs[Rung.FAILED] += 1
-    return Rung.FAILED
+    work.rungs[Solver.FAILED] += 1
+    return Solver.FAILED
 
 impact.solve_contacts = acceleration.solve_contacts = unsolvable
 from watchsim.cli import main
