@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import watchsim as ws
-from watchsim.construction.registry import NAMES, design
+from watchsim.construction.registry import design, names
 from watchsim.geometry.primitives import Arc
 
 FACTOR = 1.25
@@ -28,7 +28,7 @@ def lengths(scene: ws.Scene) -> dict[str, np.ndarray]:
     return found
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", names())
 def test_larger_by_a_quarter(name: str) -> None:
     make = getattr(ws.designs, name)
     longer = {one.name: one.shown(FACTOR * one.default) for one in design(name).dimensions if one.unit == "mm"}

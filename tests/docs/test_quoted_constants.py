@@ -23,8 +23,8 @@ from watchsim.drawing import svg as svg_file
 from watchsim.drawing import svg_elements as xml_elements
 from watchsim.dynamics import friction as solver_fallbacks
 from watchsim.mechanism import overlap
+from watchsim.scene import keys
 from watchsim.scene import load as read_scene
-from watchsim.scene import read_settings
 from watchsim.scene import trains as carriers
 from watchsim.simulation import event_loop as advance
 from watchsim.simulation import free_motion as root_bracket
@@ -118,8 +118,8 @@ QUOTED = [
     (DESIGN, "convex turns above {} rad get a corner", tolerances.JOINT_RESOLUTION),
     (DESIGN, "no more than the rounding of drawings ({} nm)", tolerances.DRAWING_ROUNDING / NANO),
     (SCENE, "overlaps there by no more than {} nm", tolerances.DRAWING_ROUNDING / NANO),
-    (SCENE, "`duration` (default {} s)", read_settings.DURATION),
-    (SCENE, "the relative error per step (default {})", read_settings.TOLERANCE),
+    (SCENE, "`duration` (default {} s)", keys.RUN["duration"].default),
+    (SCENE, "the relative error per step (default {})", keys.RUN["tolerance"].default),
     (SCENE, '`"{} µm"` |', read.SNAP / MICRO),
     (SCENE, "up to {} times as far they are joined", chain.NOTED),
     (SCENE, "lies on its pivot to {} of its size", carriers.POISED),

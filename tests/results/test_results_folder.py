@@ -16,7 +16,7 @@ from analysis.made_beats import lever_run
 from watchsim.results import archive
 from watchsim.results import folder as module
 from watchsim.results.archive import read_state, read_trajectory, whole, write_array, write_state, write_trajectory
-from watchsim.results.folder import Packed, bare_filler, check_folder, filler, is_ours, locked_drawings, ours_in, read_results
+from watchsim.results.folder import Packed, check_folder, filler, is_ours, locked_drawings, ours_in, read_results
 from watchsim.simulation.saved_state import TALLIED, SavedState
 from watchsim.storage.write import PREFIX
 
@@ -94,7 +94,7 @@ def test_what_a_folder_holds(begun: bool, told: bool, failed: bool, ended: bool,
 
 
 def test_with_little_only_motion_and_state(tmp_path: Path) -> None:
-    bare_filler(replace(RUN, end_state=state()), {"scene.lock.toml": ""})(tmp_path)
+    filler(replace(RUN, end_state=state()), None, {"scene.lock.toml": ""})(tmp_path)
     assert {path.name for path in tmp_path.iterdir()} == {"trajectory.npz", "state.npz", "scene.lock.toml"}
 
 

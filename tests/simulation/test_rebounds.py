@@ -15,7 +15,7 @@ from plain_kernels import in_python
 from watchsim.scene.forces import Contact, Side, Spring, Torque
 from watchsim.scene.load import load
 from watchsim.scene.scene import Body, Scene
-from watchsim.simulation.impacts import stop_repeated_rebounds as end_endless
+from watchsim.simulation.impacts import stop_repeated_rebounds
 from watchsim.simulation.options import options_for
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.state import EventKind
@@ -32,19 +32,17 @@ class Hits:
     """A contact that is hit again and again, and another one beside it."""
 
     def __init__(self) -> None:
-        self.state = SimpleNamespace(
-            returning=SimpleNamespace(contact=-1, last=0.0, hits=0, away=0.0, rate=0.0), clock=SimpleNamespace(time=1.0)
-        )
-        self.kernel = in_python(end_endless)
+        self.watch, self.time = SimpleNamespace(contact=-1, last=0.0, hits=0, away=0.0, rate=0.0), 1.0
+        self.kernel = in_python(stop_repeated_rebounds)
 
     def hit(self, wait: float, rate: float = -1.0, contact: int = CONTACT, restitution: float = 0.5) -> bool:
         """Is the restitution of the one that is hit after that time taken away, and only that?"""
-        self.state.clock.time += wait
+        self.time += wait
         kin = [SimpleNamespace(gN_dot=0.0), SimpleNamespace(gN_dot=rate)]
         event = SimpleNamespace(closed=SimpleNamespace(kin=kin, ids=[9, contact]), zero=[1e-9, 1e-9])
-        room = SimpleNamespace(restitution=np.array([0.7, restitution]))
-        found = self.kernel(self.state, 2, SimpleNamespace(accumulation_time=LONGEST), event, room)
-        assert room.restitution.tolist() == [0.7, 0.0 if found else restitution]
+        left = np.array([0.7, restitution])
+        found = self.kernel(self.watch, self.time, 2, SimpleNamespace(accumulation_time=LONGEST), event, left)
+        assert left.tolist() == [0.7, 0.0 if found else restitution]
         return bool(found)
 
     def row(self, waits: np.ndarray, **how: float) -> list[bool]:
@@ -94,15 +92,15 @@ def test_another_contact_between_changes_nothing_unless_it_comes_late() -> None:
     assert any(hits.row(waits[500:]))
     hits = begun()
     assert not any(hits.row(waits[:500])) and not hits.hit(1.01 * LONGEST, contact=7)
-    assert hits.state.returning.contact == 7 and hits.state.returning.hits == 0
+    assert hits.watch.contact == 7 and hits.watch.hits == 0
 
 
 def test_what_is_hit_twice_at_once_or_leaves_or_does_not_rebound_does_not_count() -> None:
     hits = begun()
     hits.hit(2.0**-20)
-    before = vars(hits.state.returning).copy()
+    before = vars(hits.watch).copy()
     assert not hits.hit(0.0) and not hits.hit(2.0**-21, rate=-0.9e-9) and not hits.hit(2.0**-21, restitution=0.0)
-    assert vars(hits.state.returning) == before
+    assert vars(hits.watch) == before
 
 
 # Do rebounds without loss go on where something resists or their play stays, and end where it closes without resistance?

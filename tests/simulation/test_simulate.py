@@ -231,8 +231,7 @@ def test_times_may_carry_their_units() -> None:
 
 SCRIPT = """
 from watchsim.dynamics import acceleration, impact
-from watchsim.dynamics.lcp import LcpOutcome
-from watchsim.dynamics.lcp import Solver
+from watchsim.dynamics.lcp import LcpOutcome, Solver
 
 def unsolvable(m, elements, bearings, level, problem):
     last = problem.last

@@ -20,6 +20,7 @@ from matplotlib.transforms import IdentityTransform
 
 from watchsim.render.marks import Clock, clock, goes_round, reading, scale_bar, speed_text, turn_text
 from watchsim.render.palette import Finish, Style, looks
+from watchsim.render.style import cut
 from watchsim.render.view import Frame, Pixels, Window, sampled
 from watchsim.scene.roles import roles
 from watchsim.scene.scene import Body
@@ -262,6 +263,7 @@ def _width(text: Text) -> float:
 
 def _title(figure: Figure, title: str, place: tuple[float, float], room: float, ink: str) -> None:
     """The scene's title, shortened where it does not fit."""
+    title = cut(title)
     text = _words(figure, title, place, max(TITLE * _unit(figure), SMALLEST), ink, weight="bold")
     while title and _width(text) > room:
         title = title[:-1].rstrip(" ,;:-–")
