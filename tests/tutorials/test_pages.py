@@ -86,7 +86,7 @@ def test_the_example_of_a_design_is_one(tmp_path: Path, executed: Callable[[str]
     assert design.refusals({}) == ()
     assert [conflict.dimension for conflict in design.refusals({"length": 5.0})] == ["length"]
     scene = load(Maker(design)(length="300 mm").write(tmp_path / "pendulum"))
-    assert scene.title == "Pendulum of 300 mm"
+    assert scene.title == "Simple pendulum"
     exact = math.sqrt(9.81 * 0.3 / (0.3**2 + 0.5 * 0.01**2)) / math.tau
     assert frequency(scene) == pytest.approx(exact, rel=1e-9)
 
