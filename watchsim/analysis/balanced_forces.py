@@ -218,14 +218,18 @@ def _within_cones(
 
 def _pressing(system: Array, right: Array) -> Array:
     """Solutions (n, edges) without negative shares, near the smallest; as near to one as can be where rounding leaves none."""
-    from scipy.optimize import nnls  # a fifth of a second to load, for runs with redundant contacts only
-
     high = 1.0 / np.maximum(np.abs(system).max(axis=2), np.finfo(float).tiny)
     scaled, target = system * high[:, :, None], right * high
     count = scaled.shape[2]
-    small, none = GENTLE * np.eye(count), np.zeros(count)
-    both = zip(scaled, target, strict=True)
-    near = np.array([nnls(np.vstack((ways, small)), np.append(load, none))[0] for ways, load in both])
+    small = np.broadcast_to(GENTLE * np.eye(count), (len(scaled), count, count))
+    ways, load = np.concatenate((scaled, small), axis=1), np.append(target, np.zeros((len(target), count)), axis=1)
+    # Least squares without bounds, where they have no negative share, are least squares with bounds.
+    near = (np.linalg.pinv(ways) @ load[:, :, None])[:, :, 0]
+    pulling = np.flatnonzero((near < 0.0).any(axis=1))
+    if len(pulling):
+        from scipy.optimize import nnls  # a fifth of a second to load
+
+        near[pulling] = [nnls(ways[k], load[k])[0] for k in pulling]
     # The push towards small forces leaves the balance off by its square; among those in use the rest is put right.
     off = target - (scaled @ near[:, :, None])[:, :, 0]
     used = near > SMALLEST * near.max(axis=1, keepdims=True)

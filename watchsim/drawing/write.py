@@ -21,14 +21,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 from xml.sax.saxutils import escape, quoteattr
 
-import ezdxf
-from ezdxf.layouts import Modelspace
-
 from watchsim.geometry.loops import Loop, extents
 from watchsim.geometry.primitives import Arc, Edge, Line, Point
 
 if TYPE_CHECKING:
     from ezdxf.document import Drawing
+    from ezdxf.layouts import Modelspace
 
 
 MM = 1e3
@@ -41,6 +39,8 @@ def dxf_text(loops: Iterable[Loop], points: Iterable[tuple[str, Point]] = (), co
 
     Characters that DXF forbids in names of layers become underscores.
     """
+    import ezdxf  # loaded only to write: a tenth of a second
+
     stream = io.StringIO()
     with _no_dates():
         document = ezdxf.new("R2010", units=ezdxf.units.MM)
@@ -63,6 +63,8 @@ def dxf_text(loops: Iterable[Loop], points: Iterable[tuple[str, Point]] = (), co
 @contextmanager
 def _no_dates() -> Iterator[None]:
     """Without dates and random identifiers, which ezdxf writes otherwise."""
+    import ezdxf
+
     before = ezdxf.options.write_fixed_meta_data_for_testing
     ezdxf.options.write_fixed_meta_data_for_testing = True
     try:
@@ -222,6 +224,8 @@ class Sheet:
 
 def new_sheet(layers: tuple[str, ...], pivot: Point | None = (0.0, 0.0)) -> Drawing:
     """An empty drawing in millimetres with these layers and, unless None, the pivot point (mm)."""
+    import ezdxf
+
     ezdxf.options.write_fixed_meta_data_for_testing = True
     sheet = ezdxf.new("R2000", units=ezdxf.units.MM)
     for layer in layers:
