@@ -1,4 +1,4 @@
-"""Does every script say what it is for?"""
+"""Is the tree seen at one glance, and does every script say what it is for?"""
 
 from __future__ import annotations
 
@@ -6,6 +6,18 @@ import re
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
+SOURCES = [path for path in (ROOT / "watchsim").rglob("*.py") if path.name != "__init__.py"]
+
+
+def test_packages_hold_files_not_folders() -> None:
+    assert len(SOURCES) > 100
+    assert [str(path) for path in SOURCES if len(path.relative_to(ROOT / "watchsim").parts) > 2] == []
+
+
+def test_a_file_holds_a_whole_thought_and_no_more() -> None:
+    """Half of all have 200 lines or more; none is longer than can be read in one sitting."""
+    lengths = sorted(len(path.read_text(encoding="utf-8").splitlines()) for path in SOURCES)
+    assert lengths[len(lengths) // 2] >= 200 and lengths[-1] < 700
 
 
 def test_every_script_answers_help() -> None:
