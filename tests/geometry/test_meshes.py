@@ -54,7 +54,7 @@ def matrix_of(file: bytes, name: str) -> list[float]:
 
 
 def test_the_file_says_where_a_body_stands_in_metres() -> None:
-    file = glb([Placed("lever", [Piece("FORK", tetrahedron(), "#102030", 0.7)], (4e-3, -7e-3), 0.6)])
+    file = glb([Placed("lever", [Piece("FORK", tetrahedron(), "#102030", True)], (4e-3, -7e-3), 0.6)])
     c, s = math.cos(0.6), math.sin(0.6)
     expected = [c, -s, 0.0, 4e-3, s, c, 0.0, -7e-3, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0]
     assert matrix_of(file, "lever") == pytest.approx(expected, abs=1e-9)
@@ -66,15 +66,17 @@ def test_the_file_says_where_a_body_stands_in_metres() -> None:
 
 
 def test_a_body_stands_at_the_origin_unless_said_otherwise() -> None:
-    file = glb([Placed("frame", [Piece("PLATE", tetrahedron(), "#102030", 0.7)])])
+    file = glb([Placed("frame", [Piece("PLATE", tetrahedron(), "#102030", True)])])
     assert matrix_of(file, "frame") == pytest.approx(np.eye(4).ravel().tolist(), abs=1e-15)
 
 
 def test_the_file_says_how_a_piece_looks() -> None:
-    (material,) = described(glb([Placed("lever", [Piece("FORK", tetrahedron(), "#10a0f3", 0.7)])]))["materials"]
-    looks = material["pbrMetallicRoughness"]
-    assert looks["baseColorFactor"] == pytest.approx([0x10 / 255, 0xA0 / 255, 0xF3 / 255, 1.0], abs=1e-6)
-    assert (looks["metallicFactor"], looks["roughnessFactor"]) == (0.7, 0.45)
+    """Colours as light, by the sRGB formula of IEC 61966-2-1; metal as such, and stones not."""
+    pieces = [Piece("FORK", tetrahedron(), "#10a0f3", True), Piece("STONE", tetrahedron(), "#10a0f4", False)]
+    fork, stone = (each["pbrMetallicRoughness"] for each in described(glb([Placed("lever", pieces)]))["materials"])
+    assert fork["baseColorFactor"] == pytest.approx([0.00518152, 0.35153260, 0.89626935, 1.0], abs=1e-7)
+    assert (fork["metallicFactor"], fork["roughnessFactor"]) == (1.0, 0.3)
+    assert (stone["metallicFactor"], stone["roughnessFactor"]) == (0.0, 0.1)
 
 
 def test_a_turned_part_is_laid_with_its_height_along_the_axis() -> None:
@@ -224,13 +226,13 @@ def test_files_read_back_where_the_body_stands() -> None:
     """GLB in metres with the pose of the body, STL in millimetres in the frame of the body."""
     disc = plate([Loop((Arc(1e-3, 0.0, 0.5e-3, 0.0, TURN),))], 0.0, 0.2e-3, 1e-7)
     assert disc is not None
-    body = Placed("wheel", [Piece("TEETH", disc, "#dcb862", 0.5)], (4e-3, 1e-3), math.pi / 2)
+    body = Placed("wheel", [Piece("TEETH", disc, "#dcb862", True)], (4e-3, 1e-3), math.pi / 2)
     scene = trimesh.load(io.BytesIO(glb([body])), file_type="glb")
     assert set(scene.geometry) == {"wheel.TEETH"} and "wheel" in scene.graph.nodes
     mesh = scene.to_mesh()
     assert mesh.center_mass == pytest.approx((4e-3, 2e-3, 1e-4), abs=1e-8)
     colour = next(iter(scene.geometry.values())).visual.material.baseColorFactor
-    assert tuple(colour[:3]) == (0xDC, 0xB8, 0x62)
+    assert colour[:3] / 255 == pytest.approx((0.7156, 0.4793, 0.1221), abs=0.5 / 255 + 1e-4)  # trimesh reads in steps of 1/255
     back = trimesh.load(io.BytesIO(stl(body)), file_type="stl")
     assert back.is_watertight and back.center_mass == pytest.approx((1.0, 0.0, 0.1), abs=1e-6)
 

@@ -95,12 +95,12 @@ SAME_VERTEX = 1e-12  # m: two edges this close share a vertex, so that trimesh s
 
 @dataclass(frozen=True)
 class Piece:
-    """A named mesh (mm, in the frame of its body) with its colour "#rrggbb" and how metallic (0 to 1) it looks."""
+    """A named mesh (mm, in the frame of its body), its colour "#rrggbb" as a screen shows it, and whether it is of metal."""
 
     name: str
     mesh: trimesh.Trimesh
     colour: str
-    metallic: float
+    metal: bool
 
 
 @dataclass(frozen=True)
@@ -177,7 +177,9 @@ def glb(bodies: Sequence[Placed], motion: Sequence[Track] = ()) -> bytes:
             scene.add_geometry(mesh, node_name=name, geom_name=name, parent_node_name=body.name)
     known = {body.name for body in bodies}
     moving = [track for track in motion if track.name in known]
-    return trimesh.exchange.gltf.export_glb(scene, buffer_postprocessor=functools.partial(add_motion, moving))
+    return trimesh.exchange.gltf.export_glb(
+        scene, buffer_postprocessor=functools.partial(add_motion, moving), tree_postprocessor=_linear_colours
+    )
 
 
 def stl(body: Placed) -> bytes:
@@ -190,8 +192,16 @@ def _together(parts: list[trimesh.Trimesh]) -> trimesh.Trimesh:
 
 
 def _material(piece: Piece) -> PBRMaterial:
-    rgb = [int(piece.colour[k : k + 2], 16) for k in (1, 3, 5)]
-    return PBRMaterial(baseColorFactor=[*rgb, 255], metallicFactor=piece.metallic, roughnessFactor=0.45)
+    """Named after its colour, which trimesh would round to 1/255: `_linear_colours` writes it."""
+    return PBRMaterial(piece.colour, metallicFactor=float(piece.metal), roughnessFactor=0.3 if piece.metal else 0.1)
+
+
+def _linear_colours(tree: Mapping[str, Any]) -> None:
+    """glTF wants the light of a colour, not the code of a screen: by IEC 61966-2-1 (sRGB), each share of 0 to 1."""
+    for material in tree.get("materials", ()):
+        codes = [int(material["name"][k : k + 2], 16) / 255 for k in (1, 3, 5)]
+        linear = [code / 12.92 if code <= 0.04045 else ((code + 0.055) / 1.055) ** 2.4 for code in codes]
+        material["pbrMetallicRoughness"]["baseColorFactor"] = [*linear, 1.0]
 
 
 def _pose(position: Point, angle: float) -> NDArray[np.float64]:

@@ -11,7 +11,6 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from watchsim.geometry.meshes import MOST_TURN, Piece, Placed, Track, laid, plate, revolved, turned_about, united
-from watchsim.geometry.primitives import TURN as TURN_of_primitives
 from watchsim.render.palette import BLUED, BRASS, GILT, PLATE, RUBY, STEEL, Finish, finish, looks
 from watchsim.render.rows import kept_rows, off_line
 from watchsim.render.view import Window, poses, stretch
@@ -67,7 +66,6 @@ def _track(name: str, t: Array, frames: Array) -> Track:
     return Track(name, t[kept], frames[kept, :2], frames[kept, 2])
 
 
-METAL, STONE = 0.55, 0.05  # how metallic the parts look
 METALS = ((12e3, GILT), (8.0e3, BRASS), (5e3, STEEL), (3e3, RUBY))  # kg/m³ from which on: gold, copper alloys, steel, stones
 
 
@@ -98,7 +96,7 @@ def closed_solids(scene: Scene, slabs: tuple[Slab, ...], deviation: float) -> li
         for (bottom, thickness), layers in levels.items():
             mesh = united([slab.loops for slab in layers], bottom, thickness, deviation)
             if mesh is not None:
-                pieces.append(Piece("+".join(slab.layer for slab in layers), mesh, PLATE.fill, METAL))
+                pieces.append(Piece("+".join(slab.layer for slab in layers), mesh, PLATE.fill, True))
         if pieces:
             found.append(Placed(body.name, pieces, body.position, body.angle))
     return found
@@ -117,7 +115,7 @@ def _is_plate(slab: Slab) -> bool:
 def _pieces(slab: Slab, body: Body, own: Finish, deviation: float) -> Iterator[Piece]:
     solid = slab.solid
     look = _finish(slab, body, own)
-    metallic = STONE if look is RUBY else METAL
+    metal = look is not RUBY
     if solid is not None and solid.kind in (UPRIGHT, LYING):
         mesh = revolved(solid.upright_profile(), deviation)
         if mesh is None:
@@ -125,15 +123,15 @@ def _pieces(slab: Slab, body: Body, own: Finish, deviation: float) -> Iterator[P
         if solid.kind == UPRIGHT:
             middle = 0.5 * float(mesh.bounds[0][2] + mesh.bounds[1][2])
             mesh.apply_translation((1e3 * solid.pivot[0], 1e3 * solid.pivot[1], 1e3 * slab.middle - middle))
-            yield Piece(slab.layer, mesh, look.fill, metallic)
+            yield Piece(slab.layer, mesh, look.fill, metal)
             return
         lying = laid(mesh, *solid.axis, slab.middle)
         for k in range(solid.count):
-            yield Piece(slab.layer, turned_about(lying, solid.pivot, TURN_of_primitives * k / solid.count), look.fill, metallic)
+            yield Piece(slab.layer, turned_about(lying, solid.pivot, math.tau * k / solid.count), look.fill, metal)
         return
     mesh = plate(slab.loops, slab.middle - 0.5 * slab.thickness, slab.thickness, deviation)
     if mesh is not None:
-        yield Piece(slab.layer, mesh, look.fill, metallic)
+        yield Piece(slab.layer, mesh, look.fill, metal)
 
 
 def _finish(slab: Slab, body: Body, own: Finish) -> Finish:
@@ -152,5 +150,5 @@ def _named_apart(pieces: list[Piece]) -> list[Piece]:
     for piece in pieces:
         seen[piece.name] = seen.get(piece.name, 0) + 1
         name = piece.name if seen[piece.name] == 1 else f"{piece.name} {seen[piece.name]}"
-        apart.append(Piece(name, piece.mesh, piece.colour, piece.metallic))
+        apart.append(Piece(name, piece.mesh, piece.colour, piece.metal))
     return apart
