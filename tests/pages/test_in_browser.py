@@ -16,7 +16,7 @@ import pytest
 from matplotlib.colors import to_rgb
 from pages.browser import opened
 from pages.pace import played
-from scipy.ndimage import maximum_filter
+from scipy.ndimage import maximum_filter, minimum_filter
 
 from watchsim.analysis.forces import forces
 from watchsim.geometry.loops import polyline
@@ -273,6 +273,48 @@ def test_a_click_follows_a_part(run: Trajectory, written: Path) -> None:
         there = np.array(page.evaluate(place, ["lever", [inside.tolist()]]))
         page.evaluate("watchsim.seek(watchsim.window[0] + 0.3)")
         assert np.allclose(page.evaluate(place, ["lever", [inside.tolist()]]), there, atol=1e-6)
+
+
+def silent(page: Any) -> bool:
+    """Nothing said but what a graphics card without a screen says of itself when somebody takes a picture."""
+    return all("GL Driver Message" in line for line in page.said)
+
+
+def test_solids_from_above_lie_on_the_flat_picture_in_its_colours(run: Trajectory, written: Path) -> None:
+    with opened(written) as page:
+        enlarged(page)
+        page.evaluate("watchsim.mark(false, false)")
+        shots = []
+        for canvas in ("stage", "solid"):
+            text = page.evaluate("name => { watchsim.seek(1.815); return document.getElementById(name).toDataURL(); }", canvas)
+            shots.append(iio.imread(io.BytesIO(base64.b64decode(text.split(",", 1)[1]))))
+            page.evaluate("watchsim.space(0, 0)")
+        flat, solid = shots[0], shots[1][::2, ::2]
+        assert flat.shape[:2] == solid.shape[:2]
+        for finish in (BRASS, STEEL, RUBY):
+            inside = minimum_filter(filled(flat, finish.fill), size=5)  # without the edges that only the flat picture draws
+            same = filled(solid, finish.fill)[inside]
+            assert inside.sum() > 100 and same.mean() > 0.85, (finish, same.mean())  # roller and spring cover the fork
+        assert silent(page) and set(page.asked) == {written.absolute().as_uri()}
+
+
+def test_solids_are_turned_chosen_and_put_away(run: Trajectory, written: Path) -> None:
+    with opened(written) as page:
+        page.focus("#stage")
+        page.keyboard.press("3")
+        page.wait_for_selector('#space[aria-pressed="true"]')
+        assert page.is_visible("#solid")
+        page.evaluate("watchsim.space(0, 0)")
+        stone = next(loop for loop in run.scene.body("lever").loops if loop.layer == "STONES")
+        inside = polyline(stone, 1e-5)[:-1].mean(axis=0)
+        ((x, y),) = page.evaluate("([name, points]) => watchsim.seen(name, points)", ["lever", [inside.tolist()]])
+        page.click("#stage", position={"x": x, "y": y})
+        page.wait_for_selector("#release:not([hidden])")
+        assert page.text_content("#release").startswith("Following lever")
+        page.keyboard.press("Alt+ArrowDown")
+        page.keyboard.press("3")
+        page.wait_for_selector('#space[aria-pressed="false"]')
+        assert not page.is_visible("#solid") and silent(page)
 
 
 def test_an_audit_of_accessibility_passes(written: Path) -> None:

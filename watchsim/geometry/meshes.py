@@ -182,6 +182,12 @@ def glb(bodies: Sequence[Placed], motion: Sequence[Track] = ()) -> bytes:
     )
 
 
+def triangles(pieces: Iterable[Piece], crease: float) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int64]]:
+    """Vertices (n, 3) in metres, normals (n, 3) and faces (m, 3) of all pieces; edges above `crease` (rad) stay sharp."""
+    smooth = trimesh.graph.smooth_shade(_together([piece.mesh for piece in pieces]), angle=crease)
+    return np.asarray(smooth.vertices) / MM, np.asarray(smooth.vertex_normals), np.asarray(smooth.faces)
+
+
 def stl(body: Placed) -> bytes:
     """A binary STL file of all pieces of one body, millimetres, in the body's frame."""
     return trimesh.exchange.stl.export_stl(_together([piece.mesh for piece in body.pieces]))

@@ -169,6 +169,7 @@ SCRIPTS = (
     "coil",
     "zigzag",
     "scene",
+    "solids",
     "view",
     "contacts",
     "clock",

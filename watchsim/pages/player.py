@@ -20,6 +20,7 @@ from watchsim.analysis.phases import Phase
 from watchsim.analysis.timegrapher import noises
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc
+from watchsim.pages.solids import packed_solids
 from watchsim.render.marks import ContactMarks, Side, goes_round
 from watchsim.render.movie import busy
 from watchsim.render.palette import BLUED, FIXED, Finish, looks
@@ -502,6 +503,7 @@ def player_data(
         "bodies": [_body(run, window, body, looks(scene)[body.name], rows.get(body.name)) for body in scene.bodies],
         "order": [names.index(body.name) for body in carried_last(scene.bodies)],
         "parts": [packed_part(part, names) for part in parts],
+        "solids": packed_solids(scene, picture_size(run, window)),
         "coils": [_coil(spring, names) for spring in hairsprings(scene)],
         "line_springs": [_zigzag(spring, names) for spring in zigzags(scene)],
         "view": _view(run, window),

@@ -4,8 +4,8 @@ const root = document.documentElement;
 root.classList.add("scripted");
 const data = JSON.parse($("data").textContent);
 
-const motion = new Motion(data), view = new View(data), scenery = new Scenery(data), contacts = new Contacts(data), clock = new Clock(data), sound = new Sound(data);
-const player = new Player(data, { motion, view, scenery, contacts, clock, sound });
+const motion = new Motion(data), view = new View(data), scenery = new Scenery(data), contacts = new Contacts(data), clock = new Clock(data), sound = new Sound(data), solids = new Solids(data, $("solid"));
+const player = new Player(data, { motion, view, scenery, solids, contacts, clock, sound });
 const curves = new Curves(data, motion, contacts, view);
 const plots = new Plots($("plots"), data, curves, (t) => { player.toggle(false); player.seek(t); });
 const stage = $("stage"), ctx = stage.getContext("2d");
@@ -77,7 +77,7 @@ const words = () => {
   $("play").setAttribute("aria-label", player.playing ? "Pause" : "Play");
   $("sign").setAttribute("d", player.playing ? "M4 3h4v14H4zM12 3h4v14h-4z" : "M5 3v14l12-7z");
   $("speed").value = String(player.speedIndex);
-  for (const [id, on] of [["adapt", player.adaptive], ["touch", player.points], ["push", player.arrows], ["tick", sound.on]]) $(id).setAttribute("aria-pressed", String(on));
+  for (const [id, on] of [["space", solids.on], ["adapt", player.adaptive], ["touch", player.points], ["push", player.arrows], ["tick", sound.on]]) $(id).setAttribute("aria-pressed", String(on));
   const followed = player.chosen >= 0 && view.anchor !== null;
   $("release").hidden = !followed;
   if (followed) $("release").textContent = `Following ${data.bodies[player.chosen].name} ✕`;
@@ -152,7 +152,7 @@ stage.addEventListener("pointermove", (event) => {
     const [ox, oy] = others[0], apart = ([x, y]) => Math.max(Math.hypot(x - ox, y - oy), 10);
     view.pan((now[0] - before[0]) / 2, (now[1] - before[1]) / 2);
     view.zoomAt(apart(now) / apart(before), 0.5 * (now[0] + ox), 0.5 * (now[1] + oy));
-  } else view.pan(now[0] - before[0], now[1] - before[1]);
+  } else shift(now[0] - before[0], now[1] - before[1], event.shiftKey);
   dirty = true;
 });
 stage.addEventListener("pointerup", (event) => {
@@ -160,7 +160,7 @@ stage.addEventListener("pointerup", (event) => {
   if (moved >= 5) return;
   const poses = motion.poses(player.t), [x, y] = place(event);
   view.aim(poses);
-  const b = scenery.hit(ctx, view, poses, x, y, player.faded);
+  const b = solids.on ? solids.hit(view, poses, { ...look, faded: player.faded, chosen: -1 }, x, y) : scenery.hit(ctx, view, poses, x, y, player.faded);
   if (b < 0) { release(); return; }
   const at = view.world(x, y);
   player.choose(b, view.within(poses, b, at));
@@ -183,11 +183,13 @@ const followNext = () => {
   showPlots(b);
 };
 const zoomBy = (factor) => { view.zoomAt(factor, 0.5 * view.width, 0.5 * view.height); dirty = true; };
-const fit = () => { view.reset(); player.chosen = -1; resize(); };
-const shift = (x, y) => { view.pan(x, y); dirty = true; };
+const fit = () => { view.reset(); solids.level(); player.chosen = -1; resize(); };
+// Dragging moves the flat picture and turns the solids, which Shift moves.
+const shift = (x, y, moves = false) => { if (solids.on && !moves) solids.orbit(x, y); else view.pan(x, y); dirty = true; };
 const nudge = (way) => { player.toggle(false); player.seek(player.t + (way * (plots.range[1] - plots.range[0])) / 500); };
 
 const toggles = {
+  space: () => { if (!solids.turn(!solids.on)) $("space").disabled = true; dirty = true; },
   adapt: () => player.setAdaptive(!player.adaptive),
   touch: () => { player.points = !player.points; dirty = true; },
   push: () => { player.arrows = !player.arrows; dirty = true; },
@@ -203,7 +205,7 @@ for (const [id, act] of Object.entries(presses)) $(id).addEventListener("click",
 const keys = {
   " ": () => player.toggle(), ",": () => player.step(-1), ".": () => player.step(1), "[": () => player.stepPhase(-1), "]": () => player.stepPhase(1), "<": () => player.setSpeed(player.speedIndex - 1), ">": () => player.setSpeed(player.speedIndex + 1),
   Home: () => player.seek(player.start), End: () => player.seek(player.end), "+": () => zoomBy(1.25), "=": () => zoomBy(1.25), "-": () => zoomBy(0.8), "\u2212": () => zoomBy(0.8), 0: fit,
-  n: followNext, Escape: release, x: () => player.chosen >= 0 && player.fade(player.chosen), a: toggles.adapt, c: toggles.touch, f: toggles.push, s: toggles.tick, t: toggles.theme,
+  n: followNext, Escape: release, x: () => player.chosen >= 0 && player.fade(player.chosen), a: toggles.adapt, c: toggles.touch, f: toggles.push, s: toggles.tick, t: toggles.theme, 3: toggles.space,
 };
 const arrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 document.addEventListener("keydown", (event) => {
@@ -228,6 +230,7 @@ SPEEDS.forEach((speed, k) => { const option = new Option(k === SPEEDS.length - 1
 $("speed").addEventListener("change", () => player.setSpeed(Number($("speed").value)));
 for (const b of curves.movers) $("whose").add(new Option(data.bodies[b].name, String(b)));
 $("whose").addEventListener("change", () => showPlots(Number($("whose").value)));
+$("space").disabled = !solids.any;
 $("adapt").disabled = !clock.uneven;
 $("push").disabled = !contacts.known;
 $("tick").disabled = !sound.any;
@@ -262,10 +265,11 @@ preferred.addEventListener("change", () => { if (!themeBefore) setTheme(preferre
 setTheme(preferred.matches ? "dark" : "light");
 const first = data.ranks.find((b) => motion.rows[b]) ?? curves.movers[0];
 if (first === undefined) document.querySelector(".plots").hidden = true; else showPlots(first);
-// For scripts that drive a page: seek to an instant, set the view, ask where a point of a body is seen (CSS pixels).
+// For scripts that drive a page: seek to an instant, set the view (in space too), ask where a point of a body is seen (CSS pixels).
 window.watchsim = {
   window: data.window,
   seek: (t) => { player.toggle(false); player.seek(t); player.draw(ctx, look); },
+  space: (tilt, yaw) => { solids.turn(true); Object.assign(solids, { tilt, yaw }); dirty = true; },
   mark: (points, forces) => { player.points = points; player.arrows = forces; dirty = true; },
   look: (centre, scale, turn) => { view.turn = turn; view.zoom = scale / view.base; view.anchor = null; view.shift = [0, 0]; view.aim(motion.poses(player.t)); view.shift = [centre[0] - view.centre[0], centre[1] - view.centre[1]]; dirty = true; },
   seen: (name, points) => { const poses = motion.poses(player.t), b = data.bodies.findIndex((body) => body.name === name); view.aim(poses); return points.map(([x, y]) => view.screen(...view.point(poses, b, x, y))); },

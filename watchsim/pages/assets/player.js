@@ -73,10 +73,11 @@ class Player {
   draw(ctx, look) {
     const poses = this.motion.poses(this.t);
     this.view.aim(poses);
+    const own = { ...look, faded: this.faded, chosen: this.chosen };
+    if (this.solids.on) { this.solids.draw(this.view, poses, own); return; }
     this.view.plain(ctx);
     ctx.fillStyle = look.paper;
     ctx.fillRect(0, 0, this.view.width, this.view.height);
-    const own = { ...look, faded: this.faded, chosen: this.chosen };
     this.scenery.draw(ctx, this.view, poses, own);
     if (this.points || this.arrows) this.contacts.draw(ctx, this.view, poses, this.t, own, this.points, this.arrows);
     this.ruler(ctx, look);
