@@ -362,11 +362,15 @@ def _verdicts(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
 def expected_text(entry: Mapping[str, Any]) -> str:
     """ "amplitude = 290.73° ± 0.05°, got 290.732°" from an entry of the summary's `expect`."""
     unit = entry["unit"] if entry["unit"] in ("", "°") else f" {entry['unit']}"
-    promised = f"{entry['expected']:.12g}{unit} ± {entry['tolerance']:.4g}{unit}"
+    promised = f"= {entry['expected']:.12g}{unit} ± {entry['tolerance']:.4g}{unit}"
+    ends = [(word, entry.get(name)) for word, name in (("from", "min"), ("to", "max")) if entry.get(name) is not None]
+    if ends:
+        promised = " ".join(f"{word} {end:.12g}{unit}" for word, end in ends)
     if entry["ok"] is None:
-        return f"{entry['key']} = {promised}"
+        return f"{entry['key']} {promised}"
     if entry["got"] is None:
-        return f"{entry['key']} = {promised}, but {entry['message']}"
+        return f"{entry['key']} {promised}, but {entry['message']}"
     # One digit more than the tolerance has.
-    digits = max(4, 2 + math.ceil(math.log10(max(abs(entry["got"]), entry["tolerance"]) / entry["tolerance"])))
-    return f"{entry['key']} = {promised}, got {entry['got']:.{min(digits, 17)}g}{unit}"
+    size = entry["tolerance"] if math.isfinite(entry["tolerance"] or math.inf) else abs(entry["expected"]) or 1.0
+    digits = max(4, 2 + math.ceil(math.log10(max(abs(entry["got"]), size) / size)))
+    return f"{entry['key']} {promised}, got {entry['got']:.{min(digits, 17)}g}{unit}"

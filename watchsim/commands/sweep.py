@@ -86,7 +86,7 @@ def _sweep(args: argparse.Namespace, scene: Scene, outputs: tuple[Output, ...], 
     from watchsim.studies.axes import axes_from_texts
     from watchsim.studies.point import Question
     from watchsim.studies.study_report import sweep_table
-    from watchsim.studies.sweep import swept
+    from watchsim.studies.sweep import measured, swept
     from watchsim.units import TIME
 
     if not args.keys:
@@ -98,7 +98,7 @@ def _sweep(args: argparse.Namespace, scene: Scene, outputs: tuple[Output, ...], 
     points = 1
     for axis in axes:
         points *= len(axis.values)
-    question = Question(scene, args.duration is None, duration, args.tol)
+    question = Question(scene, args.duration is None, duration, args.tol, function=measured(outputs))
     folder = _folder(args, scene, held)
     with stopping.keeping():
         done = _watched(

@@ -22,13 +22,14 @@ MOST = 0.75  # of a pitch: the wheel goes on by less in one beat; two teeth of a
 
 
 def passages(
-    wheel: Wheel, banks: tuple[float, float], start: Rest, teeth: Teeth, roller: Roller | None = None
+    wheel: Wheel, banks: tuple[float, float], start: Rest, teeth: Teeth, roller: Roller | None = None, few: int | None = None
 ) -> list[Passage]:
-    """Every tooth past both stones, in the order of time; one more beat at the end, for the lock of the last."""
+    """Every tooth, or the first `few`, past both stones, in the order of time; one more beat at the end, for the lock of the
+    last."""
     ox, oy = wheel.hands.pivot(wheel.parts.wheel, wheel.at(0.0, 0.0))
     found: list[Passage] = []
     rest = start
-    for beat in range(2 * teeth.count + 1):
+    for beat in range(2 * (few or teeth.count) + 1):
         side = 1.0 if beat % 2 == 0 else -1.0
         sweep = wheel.lead(rest, banks[1] if side > 0.0 else banks[0])
         tooth = teeth.number(math.atan2(rest.y - oy, rest.x - ox) - rest.wheel)
@@ -138,8 +139,8 @@ class Function:
     swung: tuple[float, float] | None = None
 
 
-def measure(scene: Scene, compiled: Compiled | None = None) -> Function:
-    """Measure a scene; never raises for a mechanism that has no such geometry."""
+def measure(scene: Scene, compiled: Compiled | None = None, few: int | None = None) -> Function:
+    """Measure a scene; never raises for a mechanism that has no such geometry. Of teeth that are alike `few` are enough."""
     free = ungeared(scene)
     compiled = compiled if compiled is not None and free is scene else compile_scene(free)
     parts = parts_of(scene, compiled)
@@ -162,7 +163,7 @@ def measure(scene: Scene, compiled: Compiled | None = None) -> Function:
         if first is None:
             raise NotMeasured("the wheel runs free as the lever goes to its bank")
         roller = _roller(scene, wheel, banks) if len(parts.to_roller) else None
-        beats = passages(wheel, banks, first, toothed, roller)
+        beats = passages(wheel, banks, first, toothed, roller, few)
     except NotMeasured as reason:
         return Function(parts, number, missing=(("lock, draw, lift, drop", str(reason)),))
     entry_side = _entry_side(wheel, beats[0])

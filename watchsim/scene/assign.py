@@ -11,9 +11,11 @@ from typing import Any
 
 from watchsim.scene.errors import Faults
 from watchsim.scene.keys import (
+    DESIGN,
     DRIVEN,
     LAYERS,
     LISTED,
+    NAMED,
     NAMED_TABLES,
     SECTIONS,
     TABLE,
@@ -26,9 +28,9 @@ from watchsim.scene.keys import (
     nearest,
     steps_into,
 )
-from watchsim.scene.scene import MOTIONS
+from watchsim.scene.scene import MOTIONS, Scene
 from watchsim.scene.values import shown
-from watchsim.units import NUMBER, Dimension
+from watchsim.units import DIMENSIONS, NUMBER, Dimension, UnitError, known_unit, split
 
 
 def assign(mapping: dict[str, Any], key: str, value: object, faults: Faults) -> None:
@@ -138,6 +140,33 @@ def motion_of(bodies: object, name: object) -> str:
     if motion == DRIVEN:
         return "slide" if isinstance(entry, Mapping) and "axis" in entry else "pivot"
     return motion if motion in MOTIONS else "pivot"
+
+
+def dimension_of(scene: Scene, key: str) -> Dimension | None:
+    """What kind of quantity the scene holds at a dotted path; None where it is no quantity, or there is no such path."""
+    path = tuple(key.split("."))
+    if path[0] == DESIGN and len(path) == 2:
+        return _of_design(scene, path[1])
+    found = key_at(path)
+    if found is None:
+        return None
+    name: object = path[1] if path[0] in NAMED else None
+    if path[0] in LISTED:
+        entries = scene.source.get(path[0], [])
+        number = int(path[1]) if path[1].isdigit() else len(entries)
+        name = entries[number].get("body") if number < len(entries) else None
+    return found.dimension_for(motion_of(scene.source.get("bodies", {}), name))
+
+
+def _of_design(scene: Scene, name: str) -> Dimension | None:
+    """What a dimension of the scene's design measures: a scene that is made from one holds all of them with their units."""
+    table = scene.source.get(DESIGN)
+    value = table.get(name) if isinstance(table, dict) else None
+    try:
+        powers = known_unit(split(value)[1]).powers
+    except UnitError:
+        return None
+    return next((one for one in DIMENSIONS if powers in one.powers), None)
 
 
 def with_unit(value: object, dimension: Dimension | None) -> object:

@@ -30,6 +30,7 @@ MOST_COPIES = 1000  # of one layer: each is weighed, drawn and looked at
 FEWEST_TURNS, MOST_TURNS = 1.0, 100.0  # that a picture can show
 LEAST_RATIO = 1e-6  # nearer to 0 it is a slip
 TEXT, TEXTS, FLAG, PAIR, POINTS, VALUE = "text", "list of texts", "true or false", "two values", "list of points", "value"
+VALUES = "a value or a list"
 TABLE, NAMED_TABLES, TABLES_LISTED, LAYERS = "table", "tables by name", "list of tables", "tables by layer"
 
 
@@ -172,6 +173,14 @@ ADJUST: Keys = {
     "along": _length("along the straight edge nearest to `face`"),
     "face": _length("the end of that edge towards which", form=PAIR),
     "near": _length("only the outline nearest to this place", form=PAIR, absent="all of the layer"),
+    "offset": _length("by which the outline grows, or shrinks (negative), on all sides"),
+}
+TEETH: Keys = {
+    "pitch": _length("along the circle of the tips, of each tooth", form=VALUES),
+    "height": _length("of the tips, one value or one for each tooth", form=VALUES),
+    "width": _length("of the teeth, one value or one for each tooth", form=VALUES),
+    "wobble": _angle("of the wheel's plane on its arbor; what is seen from above shrinks along `towards`"),
+    "towards": _angle("of the drawing, where the wobble is seen"),
 }
 BODY: Keys = {
     "drawing": _text("DXF or SVG file, relative to the scene"),
@@ -200,6 +209,11 @@ BODY: Keys = {
     "solids": Key(doc="what it is made of", inner=SOLID, form=TABLES_LISTED),
     "on": _text("the body that carries it", absent="the movement"),
     "adjust": Key(doc="turns and shifts parts of its drawing", inner=ADJUST, form=LAYERS),
+    "teeth": Key(doc="errors of its teeth", inner=TEETH, form=TABLE),
+    "play": _length(
+        "of the pivot in its hole: it lies half of it off `position`", limits=_not_negative("play cannot be negative")
+    ),
+    "side": _angle("in the movement, to which the play is taken up"),
     "swing": Key(doc="a sine that it is driven by", inner=SWING, form=TABLE, motions=(DRIVEN,)),
     "path": Key(doc="times and travels that it is driven through", form=POINTS, motions=(DRIVEN,)),
 }
@@ -362,8 +376,24 @@ TIMEGRAPHER: Keys = {
     ),
 }
 EXPECTATION: Keys = {
-    "value": Key(doc="what a run must give", required=True),
-    "tolerance": Key(doc="how far it may be off", required=True, limits=_above_zero("")[:1]),
+    "value": Key(doc="what a run must give; with `tolerance`"),
+    "tolerance": Key(doc="how far it may be off", limits=_above_zero("")[:1]),
+    "min": Key(doc="the least that it may give, instead of `value`"),
+    "max": Key(doc="the most that it may give"),
+}
+TOLERANCE: Keys = {
+    "limits": _text('deviations from the nominal value: "±5 µm", "+0/-8 µm", or a fit class of ISO 286 such as "h6"'),
+    "distribution": _text(
+        "of the values within the limits", choices=("uniform", "normal", "truncated", "triangular", "file"), absent="uniform"
+    ),
+    "cpk": _number(
+        "of a normal distribution: half the width of the limits by three sigmas", default=1.0, limits=_above_zero("")
+    ),
+    "sigma": Key(doc="of a normal distribution: its standard deviation", limits=_above_zero("")),
+    "group": _text("dimensions of the same group get one draw: made by one tool, or of one batch"),
+    "each": Key(doc="one value for each tooth", form=FLAG, absent="false"),
+    "file": _text("measured values, one with its unit on each line"),
+    "correlated": Key(doc="coefficients of correlation with other dimensions", form="table of numbers"),
 }
 LOCK: Keys = {
     "versions": Key(doc="what wrote the scene"),
@@ -374,7 +404,7 @@ LOCK: Keys = {
 DESIGN = "design"  # [design], whose keys are the dimensions of the design it names
 
 TABLES = {"scene": SCENE, "run": RUN, "timegrapher": TIMEGRAPHER, "lock": LOCK}  # [name]
-NAMED = {"bodies": BODY, "expect": EXPECTATION}  # [name.anything]
+NAMED = {"bodies": BODY, "expect": EXPECTATION, "tolerances": TOLERANCE}  # [name.anything]
 LISTED = {  # [[name]]
     "springs": SPRING,
     "torques": TORQUE,

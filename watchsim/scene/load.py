@@ -20,6 +20,7 @@ from watchsim.scene.read_bodies import read_bodies
 from watchsim.scene.read_contacts import read_contacts
 from watchsim.scene.read_forces import read_damping, read_line_springs, read_springs, read_torques
 from watchsim.scene.read_settings import read_expectations, read_heading, read_run, read_timegrapher
+from watchsim.scene.read_tolerances import read_tolerances
 from watchsim.scene.read_trains import note_carriers, read_gears, with_trains
 from watchsim.scene.roles import frequency
 from watchsim.scene.scene import Scene, Written
@@ -96,6 +97,9 @@ def from_mapping(
         reader=changed,
     )
     _check_nominal(scene, faults)
+    if "tolerances" in mapping:
+        tolerances, correlated = read_tolerances(scene, faults)
+        scene = replace(scene, tolerances=tolerances, correlated=correlated)
     faults.raise_any()
     return scene
 

@@ -21,7 +21,7 @@ from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import AT_ONCE, Floats, Ints, Loop, near_pairs, table_of
 from watchsim.geometry.primitives import TURN, Arc, Line, Point
 from watchsim.scene.keys import SHAPES, closest, nearest
-from watchsim.scene.placing import adjusted, given_pivot, marked_pivot
+from watchsim.scene.placing import adjusted, given_pivot, marked_pivot, with_teeth
 from watchsim.scene.values import UNREADABLE, Table, shown
 
 # Where do drawings come from that a design makes, without a file?
@@ -280,7 +280,7 @@ def read_outlines(table: Table, folder: Path, made: Made) -> Outlines:
     sources = [key for key in ("drawing", *SHAPES) if key in table]
     for extra in sources[1:]:
         table.fault(extra, f"a body has one outline: leave out {extra} or {sources[0]}")
-    for key in ("layers", "draw", "units", "snap", "material", "adjust"):
+    for key in ("layers", "draw", "units", "snap", "material", "adjust", "teeth"):
         if key in table and sources and sources[0] != "drawing":
             table.fault(key, f"belongs to a drawing; this body is a {sources[0]}")
     if "drawing" in table:
@@ -296,7 +296,7 @@ def _from_drawing(table: Table, folder: Path, made: Made) -> Outlines:
     marked = isinstance(table.mapping.get("pivot"), str)
     if drawing is None:
         return Outlines(pivot=UNREADABLE if marked else given_pivot(table), sound=False)
-    drawing = adjusted(table, drawing)
+    drawing = adjusted(table, with_teeth(table, drawing))
     pivot = marked_pivot(table, drawing) if marked else given_pivot(table)
     apart, drilled = frozenset(set_apart(table.mapping)), frozenset(hollow(table.mapping))
     sides = {layer: side for layer, side in face_layers(table, drawing, table.texts("layers")).items() if layer not in apart}

@@ -4,8 +4,8 @@
 STONES = { turn = "0.1°", about = "PIVOT", shift = ["0 µm", "2 µm"] }      # all of a layer
 STONES = [{ near = ["-0.7 mm", "-0.2 mm"], along = "5 µm", face = ["-0.8 mm", "-0.4 mm"] }]   # one outline of it
 
-First everything is turned, then shifted; places and directions are those of the drawing as it is drawn. Lines and arcs are
-moved exactly, and all that follows from outlines (contacts, mass, pictures, exports) follows from the moved ones.
+First everything is turned, then shifted, then grown; places and directions are those of the drawing as it is drawn. Lines and
+arcs stay what they are, and all that follows from outlines (contacts, mass, pictures, exports) follows from the moved ones.
 """
 
 from __future__ import annotations
@@ -15,6 +15,8 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from watchsim.drawing.chain_faults import crossings
 from watchsim.drawing.circles import circle_of
 from watchsim.drawing.drawing import Drawing
@@ -22,7 +24,8 @@ from watchsim.drawing.nodes import Outline, nearest_fraction
 from watchsim.geometry.loops import Loop, extents, winding
 from watchsim.geometry.primitives import Line, Point
 from watchsim.geometry.solids import section
-from watchsim.scene.keys import ADJUST, nearest
+from watchsim.geometry.variation import Floats, TeethErrors, fold, grown, with_errors
+from watchsim.scene.keys import ADJUST, TEETH, nearest
 from watchsim.scene.values import NAN, UNREADABLE, Table, shown
 
 # Which outlines of a layer does a place near them choose, and which edge?
@@ -230,11 +233,52 @@ def _with_part_moved(one: Table, body: Table, before: Drawing, drawing: Drawing,
         away = _radial(one, body, before, _centre([meant[k] for k in part]))
         for k in part:
             now[numbers[k]] = now[numbers[k]].moved(turn, (common[0] + away[0], common[1] + away[1]))
+    if (offset := one.quantity("offset")) and math.isfinite(offset):
+        try:
+            for k in numbers:
+                now[k] = grown(now[k], offset)
+        except ValueError as error:
+            one.fault("offset", str(error), with_value=True)
     points = drawing.points
     if "near" not in one:
         points = tuple((name, *_moved((px, py), turn, common)) if name == layer else (name, px, py) for name, px, py in points)
     whole = len(drawing.loops)
     return replace(drawing, loops=tuple(now[:whole]), open_chains=tuple(now[whole:]), points=points)
+
+
+def with_teeth(table: Table, drawing: Drawing) -> Drawing:
+    """The drawing with what `teeth` says is wrong with the teeth; faults go to the table."""
+    if not isinstance(table.mapping.get("teeth"), dict):
+        if "teeth" in table:
+            table.fault("teeth", 'a table is needed here, such as teeth = { height = "2 µm" }', with_value=True)
+        return drawing
+    one = Table(table.mapping["teeth"], f"{table.path}.teeth", TEETH, table.faults)
+    marked = isinstance(table.mapping.get("pivot"), str)
+    centre = marked_pivot(table, drawing) if marked else table.pair("pivot")
+    layers = table.mapping.get("layers", [loop.layer for loop in drawing.loops])
+    folds = [fold(loop, centre) if loop.layer in layers and math.isfinite(sum(centre)) else 1 for loop in drawing.loops]
+    teeth = max(folds, default=1)
+    if teeth < 2:
+        one.fault("", "there are no equal teeth about the pivot")
+        return drawing
+    pitch, height, width = (_each(one, key, teeth) for key in ("pitch", "height", "width"))
+    errors = TeethErrors(pitch, height, width, one.quantity("wobble"), one.quantity("towards"))
+    if not all(np.isfinite(value).all() for value in (errors.pitch, errors.height, errors.width, errors.wobble)):
+        return drawing
+    which = folds.index(teeth)
+    loops = list(drawing.loops)
+    loops[which] = with_errors(loops[which], centre, teeth, errors)
+    return replace(drawing, loops=tuple(loops))
+
+
+def _each(one: Table, key: str, teeth: int) -> Floats:
+    """The values of all teeth, m; one value stands for all."""
+    value = one.mapping.get(key, "0 m")
+    listed = value if isinstance(value, (list, tuple)) else [value] * teeth
+    if len(listed) != teeth:
+        one.fault(key, f"there are {teeth} teeth: give one value, or a list of {teeth}", with_value=True)
+        return np.zeros(teeth)
+    return np.array([one.parsed(f"{key}.{i}", item, one.dimension(key)) for i, item in enumerate(listed)])
 
 
 def _about(about: Point, turn: float, shift: Point) -> Point:

@@ -250,7 +250,7 @@ def read_bodies(mapping: object, folder: Path, faults: Faults, made: Made | None
         bores[_drawing_path(entry, folder)].update(set(bored(entry)))
     read = [_read(mapping, name, folder, users, bores, faults, made or {}) for name in mapping]
     places = {one.name: one for one in read}
-    bodies = [_body(one, _position(one, places), _carrier(one.table, one.name, mapping)) for one in read]
+    bodies = [_body(one, _with_play(one.table, _position(one, places)), _carrier(one.table, one.name, mapping)) for one in read]
     findings = [finding for one in read for finding in (*one.outlines.findings, *one.inertias.findings)]
     sound = {one.name for one in read if one.outlines.sound}
     drawings = {one.table.text("drawing"): one.outlines.data for one in read if one.outlines.data is not None}
@@ -327,6 +327,14 @@ def _position(one: _Read, read: Mapping[str, _Read]) -> Point:
         return (0.0, 0.0)
     (x, y), (x0, y0) = one.inertias.origin, carrier.inertias.origin if carrier else (0.0, 0.0)
     return (x - x0, y - y0)
+
+
+def _with_play(table: Table, position: Point) -> Point:
+    """Where the pivot lies in its hole: half of the play off, to one side."""
+    if "side" in table and "play" not in table:
+        table.fault("side", 'says where the pivot lies in its play: write play = "10 µm" as well')
+    off, side = 0.5 * table.quantity("play"), table.quantity("side")
+    return (position[0] + off * math.cos(side), position[1] + off * math.sin(side)) if off else position
 
 
 def _body(one: _Read, position: Point, on: str | None) -> Body:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -84,12 +85,14 @@ def _stride(table: Table, path: str, item: str) -> int:
 
 # How are the title, the run, the timegrapher and the expectations of the scene file read?
 
+FUNCTION = ("lock", "total_lock", "run", "draw", "drop", "freedom")  # the geometry of function, its worst stone and tooth
 WATCH_QUANTITIES = {
     "amplitude": units.ANGLE,
     "rate": units.RATE,
     "period": units.TIME,
     "beat_error": units.TIME,
     "frequency": units.FREQUENCY,
+    **dict.fromkeys(FUNCTION, units.ANGLE),
 }
 EXAMPLES = {  # of what is expected, with its tolerance
     "amplitude": ('"275°"', '"1°"'),
@@ -147,18 +150,37 @@ def read_expectations(mapping: Mapping[str, Any], faults: Faults) -> tuple[Expec
 
 
 def _expectation(key: str, table: Table) -> Expectation | None:
-    """In the unit of its value; the tolerance may have another unit of the same kind."""
+    """In the unit of its value, or of its first limit; the others may have another unit of the same kind."""
     value, tolerance = EXAMPLES.get(key, ("500", "3"))
-    if table.lacks(f"{{ value = {value}, tolerance = {tolerance} }}") or not table.is_table:
+    given = [name for name in ("value", "min", "max") if name in table]
+    if given[:1] == ["value"] and len(given) > 1:
+        table.fault(given[1], "stands instead of value and tolerance: leave out one or the other", with_value=True)
+    elif not given or ("tolerance" in table) != ("value" in table):
+        missing = ", ".join(name for name in ("value", "tolerance") if name not in table)
+        if table.is_table:
+            table.fault("", f"missing: {missing}. Write e.g. {{ value = {value}, tolerance = {tolerance} }}")
         return None
     try:
-        number, unit = split(table.mapping["value"])
+        unit = split(table.mapping[given[0]])[1]
         dimension = WATCH_QUANTITIES.get(key) or _kind(unit)
-        parse(table.mapping["value"], dimension)
+        numbers = [_in_unit(parse(table.mapping[name], dimension), table.mapping[name], unit) for name in given]
     except UnitError as error:
-        table.fault("value", str(error), with_value=True)
+        table.fault(given[0], str(error), with_value=True)
         return None
-    return Expectation(key, float(number), _tolerance(table, unit, dimension), unit)
+    if given[0] == "value":
+        return Expectation(key, numbers[0], _tolerance(table, unit, dimension), unit)
+    low, high = (numbers[given.index(name)] if name in given else None for name in ("min", "max"))
+    if low is None or high is None:
+        return Expectation(key, numbers[0], math.inf, unit, low, high)
+    if low > high:
+        table.fault("min", "is above max", with_value=True)
+    return Expectation(key, 0.5 * (low + high), 0.5 * (high - low), unit, low, high)
+
+
+def _in_unit(si: float, value: object, unit: str) -> float:
+    """In that unit; without conversion where it has it already."""
+    number, own = split(value)
+    return float(number) if own == unit else si / known_unit(unit).factor
 
 
 def _kind(unit: str) -> Dimension:

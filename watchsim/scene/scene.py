@@ -19,6 +19,7 @@ from watchsim.geometry.primitives import Point
 from watchsim.scene.errors import Fault, SceneError
 from watchsim.scene.forces import Contact, Damping, LineSpring, Spring, Torque
 from watchsim.scene.solids import Solid
+from watchsim.units import LENGTH, Dimension, known_unit
 
 # How much of a run is kept?
 
@@ -232,12 +233,71 @@ class Body:
 
 @dataclass(frozen=True, slots=True)
 class Expectation:
-    """A number the scene promises, in the units it was written in."""
+    """A number the scene promises, in the units it was written in: `value` within `tolerance`, or from `low` to `high`.
+
+    Of one with `low` and `high` value and tolerance are the middle and half the width, or that limit and infinity.
+    """
 
     key: str
     value: float
     tolerance: float
     unit: str
+    low: float | None = None
+    high: float | None = None
+
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """The least and the most that keeps the promise; infinite where there is no limit."""
+        if self.low is None and self.high is None:
+            return self.value - self.tolerance, self.value + self.tolerance
+        return -math.inf if self.low is None else self.low, math.inf if self.high is None else self.high
+
+
+@dataclass(frozen=True, slots=True)
+class Tolerance:
+    """Within which limits a number of the scene is made.
+
+    key         dotted path, as for `Scene.set`; `nominal` what the scene holds there (SI)
+    low, high   deviations from it (SI): the limits
+    shape       uniform, normal, truncated, triangular: about the middle of the limits; file: `measured` deviations, sorted
+    sigma       of a normal distribution (SI), also where it is truncated at its limits
+    group       tolerances of one group get one draw; "" for a draw of its own
+    count       of values: one for each tooth, else 1
+    """
+
+    key: str
+    nominal: float
+    low: float
+    high: float
+    dimension: Dimension
+    shape: str = "uniform"
+    sigma: float = 0.0
+    group: str = ""
+    count: int = 1
+    measured: tuple[float, ...] = ()
+
+    @property
+    def unit(self) -> str:
+        """In which people read it."""
+        return ("µm" if self.dimension is LENGTH else self.dimension.usual[1]) if self.dimension.si else ""
+
+    @property
+    def words(self) -> str:
+        """ "±5 µm, normal, Cpk 1.33"."""
+        low, high = (f"{one / known_unit(self.unit).factor:+.4g}".replace("-", "−") for one in (self.low, self.high))
+        unit = self.unit if self.unit in ("", "°") else f" {self.unit}"
+        limits = f"±{high[1:]}{unit}" if self.low == -self.high else f"{high}/{low}{unit}"
+        cpk = f", Cpk {(self.high - self.low) / (6.0 * self.sigma):.3g}" if self.sigma else ""
+        each = f", one for each of {self.count} teeth" if self.count > 1 else ""
+        return f"{limits}, {self.shape}{cpk}{each}{f', drawn with {self.group}' if self.group else ''}"
+
+
+@dataclass(frozen=True, slots=True)
+class Correlation:
+    """Of the normal scores of two tolerances."""
+
+    between: tuple[str, str]
+    coefficient: float
 
 
 @dataclass(frozen=True)
@@ -263,6 +323,7 @@ class Scene:
     expect          numbers that a run promises
     gears           with play; those without are `Body.geared`, and, two by two, `rigid_gears`
     line_springs    between points of two bodies, or of a body and the movement
+    tolerances      within which limits its numbers are made; `correlated` which of them go together
     path, source    the file, and the TOML mapping that it holds
     findings        what the drawings said besides errors; `drawings` the files as they were read, by their names in the scene
     written         of a scene made from a design: `source` then holds the design's scene as well
@@ -287,6 +348,8 @@ class Scene:
     gears: tuple[Gear, ...] = ()
     rigid_gears: tuple[Gear, ...] = ()
     line_springs: tuple[LineSpring, ...] = ()
+    tolerances: tuple[Tolerance, ...] = ()
+    correlated: tuple[Correlation, ...] = ()
     path: Path | None = field(default=None, compare=False)
     source: dict[str, Any] = field(default_factory=dict, repr=False, compare=False)
     findings: tuple[Finding, ...] = field(default=(), repr=False, compare=False)

@@ -11,14 +11,12 @@ from typing import Any
 
 import numpy as np
 
-from watchsim.scene.assign import motion_of
+from watchsim.scene.assign import dimension_of
 from watchsim.scene.errors import Fault, SceneError
-from watchsim.scene.keys import LISTED, NAMED, key_at
 from watchsim.scene.scene import Scene
-from watchsim.units import DIMENSIONS, NUMBER, Dimension, UnitError, known_unit, parse, split
+from watchsim.units import NUMBER, Dimension, UnitError, parse, split
 
 MOST = 100_000  # points of a sweep
-DESIGN = "design"  # the table of a scene that is made from a design
 
 Value = float | str
 
@@ -91,33 +89,6 @@ def checked(scene: Scene, axes: Sequence[Axis], found: Sequence[Fault] = ()) -> 
     if faults:
         raise SceneError(faults)
     return tuple(axes)
-
-
-def dimension_of(scene: Scene, key: str) -> Dimension | None:
-    """What kind of quantity the scene holds at a dotted path; None where it is no quantity, or there is no such path."""
-    path = tuple(key.split("."))
-    if path[0] == DESIGN and len(path) == 2:
-        return _of_design(scene, path[1])
-    found = key_at(path)
-    if found is None:
-        return None
-    name: object = path[1] if path[0] in NAMED else None
-    if path[0] in LISTED:
-        entries = scene.source.get(path[0], [])
-        number = int(path[1]) if path[1].isdigit() else len(entries)
-        name = entries[number].get("body") if number < len(entries) else None
-    return found.dimension_for(motion_of(scene.source.get("bodies", {}), name))
-
-
-def _of_design(scene: Scene, name: str) -> Dimension | None:
-    """What a dimension of the scene's design measures: a scene that is made from one holds all of them with their units."""
-    table = scene.source.get(DESIGN)
-    value = table.get(name) if isinstance(table, dict) else None
-    try:
-        powers = known_unit(split(value)[1]).powers
-    except UnitError:
-        return None
-    return next((one for one in DIMENSIONS if powers in one.powers), None)
 
 
 def _axis(scene: Scene, key: str, told: str) -> Axis:

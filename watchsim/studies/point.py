@@ -7,14 +7,18 @@ reason in the row and stops nobody.
 from __future__ import annotations
 
 import difflib
+import math
+import time
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from watchsim.analysis.timing import mean_over
 from watchsim.analysis.verdict_kinds import TICKS
+from watchsim.escapement.measure import measure
 from watchsim.scene.errors import SceneError
 from watchsim.scene.load import changed
+from watchsim.scene.read_settings import FUNCTION
 from watchsim.scene.roles import roles
 from watchsim.scene.scene import Scene
 from watchsim.simulation.simulate import simulate
@@ -43,9 +47,11 @@ OUTPUTS = {
         Output("beat_error", "beat_error_ms", "beat error", "ms"),
         Output("period", "period_s", "period", "s"),
         Output("multiplier", "multiplier", "multiplier", "", has_error=False),
+        *(Output(name, f"{name}_deg", name.replace("_", " "), "°", has_error=False) for name in FUNCTION),
     )
 }
 USUAL = ("amplitude", "rate", "beat_error")
+PARTS = {**{name: (name,) for name in FUNCTION[:3]}, "draw": ("draw", "draw_end"), "drop": ("drop",)}  # of the stones
 
 
 def outputs_named(names: Iterable[str]) -> tuple[Output, ...]:
@@ -67,7 +73,10 @@ Row = dict[str, Any]
 
 @dataclass(frozen=True)
 class Question:
-    """`by_shooting`: the limit cycle, else a run of `duration` s (None: the scene's). `amplitude` (rad, m): where to begin."""
+    """`by_shooting`: the limit cycle, else a run of `duration` s (None: the scene's). `amplitude` (rad, m): where to begin.
+
+    function  the geometry of function is measured, too: of every tooth (0), or of the first so many, where they are alike
+    """
 
     scene: Scene
     by_shooting: bool = True
@@ -75,21 +84,49 @@ class Question:
     tolerance: float | None = None
     amplitude: float | None = None
     brief: bool = False  # one oscillation on the cycle, without errors
+    function: int | None = None
 
 
 def answer(question: Question, changes: Mapping[str, Value], interrupted: Callable[[], bool] = lambda: False) -> Row:
-    """The row of one point: every output with its error (None where there is none), `verdict` and `message`.
+    """The row of one point: every output with its error (None where there is none), `verdict` and `message`; `seconds` says
+    where the time went.
 
     KeyboardInterrupt where it was cut short by `interrupted`.
     """
     row: Row = {name: None for one in OUTPUTS.values() for name in ((one.column, f"{one.column}_error"))}
     row.update(verdict=None, message="")
+    begun = time.perf_counter()
     try:
         scene = changed(question.scene, changes) if changes else question.scene
+        row["seconds"] = {"geometry": time.perf_counter() - begun}
+        row.update(function_of(scene, question.function) if question.function is not None else {})
+        row["seconds"]["function"] = time.perf_counter() - begun - row["seconds"]["geometry"]
         row.update(_by_shooting(question, scene) if question.by_shooting else _by_run(question, scene, interrupted))
     except SceneError as error:
         row["message"] = " ".join(str(error).split())
+    seconds = row.setdefault("seconds", {})
+    seconds["cells"] = row.pop("cells_s", 0.0)
+    seconds["motion"] = time.perf_counter() - begun - sum(seconds.values())
     return row
+
+
+def function_of(scene: Scene, few: int | None = None) -> Row:
+    """The geometry of function of its worst stone and tooth, degrees; None for what the mechanism has not.
+
+    lock, total_lock, run, draw (the less of both ends), drop: the least; freedom of the lever on its bank: the largest.
+    """
+    found = measure(scene, few=few or None)
+    row: Row = {}
+    for name, fields in PARTS.items():
+        each = [getattr(one, field) for one in found.pallets or () for field in fields]
+        row[f"{name}_deg"] = _worst(min, [value for one in each for value in (one.value, one.worst)])
+    row["freedom_deg"] = _worst(max, [one.worst.value for one in found.safety or ()])
+    return row
+
+
+def _worst(of: Callable[..., float], values: Iterable[float]) -> float | None:
+    finite = [math.degrees(value) for value in values if math.isfinite(value)]
+    return of(finite) if finite else None
 
 
 def _by_shooting(question: Question, scene: Scene) -> Row:
@@ -99,6 +136,7 @@ def _by_shooting(question: Question, scene: Scene) -> Row:
     for one in OUTPUTS.values():
         if one.column in numbers and cycle.found:
             row[one.column], row[f"{one.column}_error"] = numbers[one.column], numbers[f"{one.column}_error"]
+    row["cells_s"] = cycle.cells_s
     row["uneven_ms"] = cycle.uneven_ms if cycle.found else None
     row["multiplier"] = max(cycle.multipliers, key=abs, default=None)
     row["multiplier_error"] = max(cycle.multipliers_error, default=None)

@@ -17,10 +17,11 @@ import numpy as np
 from watchsim.construction import registry
 from watchsim.construction.design import Dimension as DesignDimension
 from watchsim.displays import notebook_html
+from watchsim.scene.assign import dimension_of
 from watchsim.scene.errors import Fault, SceneError
+from watchsim.scene.keys import DESIGN
 from watchsim.scene.roles import nominal_frequency
 from watchsim.scene.scene import Body, Scene
-from watchsim.studies.axes import DESIGN, dimension_of
 from watchsim.studies.cycle import Cycle
 from watchsim.studies.point import USUAL, Output, Question, Row, outputs_named
 from watchsim.studies.steady import steady

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from watchsim.displays import notebook_html
+from watchsim.scene.read_settings import FUNCTION
 from watchsim.scene.scene import Scene
 from watchsim.simulation.runner import held_interrupts
 from watchsim.studies.axes import Axis, Value, axes_from_values
@@ -91,7 +92,7 @@ def sweep(  # noqa: PLR0913 - options, by name
 
         scene = load(scene)
     axes, asked = axes_from_values(scene, values), outputs_named(outputs)
-    question = Question(scene, steady, _seconds(duration), tolerance)
+    question = Question(scene, steady, _seconds(duration), tolerance, function=measured(asked))
     return swept(question, axes, asked, chosen(workers, scheduler), folder=folder, resume=resume, progress=progress)
 
 
@@ -117,6 +118,11 @@ def swept(
         for number in sorted(rows)
     )
     return Sweep(question.scene.title, tuple(axes), outputs, told, len(rows) == len(points), time.perf_counter() - begun)
+
+
+def measured(outputs: Iterable[Output]) -> int | None:
+    """For `Question.function`: every tooth where an output needs the geometry of function."""
+    return 0 if any(one.name in FUNCTION for one in outputs) else None
 
 
 def _grid(axes: Sequence[Axis]) -> Iterable[tuple[Value, ...]]:
