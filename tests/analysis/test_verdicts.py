@@ -15,14 +15,14 @@ from every_time import few
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from watchsim.analysis.timing import beats, pitch
+from watchsim.analysis.timing import beats
 from watchsim.analysis.verdict import overbanking, unsettled, verdict
 from watchsim.analysis.verdict_kinds import Verdict
 from watchsim.analysis.watch import Teeth, arms, at_lever, face, in_force, teeth, unlocked, watch_of
 from watchsim.paths import profiles_dir
 from watchsim.scene.forces import Damping, Spring, Torque
 from watchsim.scene.load import load
-from watchsim.scene.roles import roles
+from watchsim.scene.roles import pitch, roles
 from watchsim.scene.scene import Body, Scene
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.state import EventKind

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from watchsim.analysis.timing import Beats, holding_at_end, is_recorded, nominal_period, pitch
-from watchsim.scene.roles import drive_direction, keeps_time, only_presses, oscillators, roles
+from watchsim.analysis.timing import Beats, holding_at_end, is_recorded, nominal_period
+from watchsim.scene.roles import drive_direction, keeps_time, only_presses, oscillators, pitch, roles
 from watchsim.simulation.recording import FEWEST_TURNS, Events
 from watchsim.simulation.state import EventKind
 from watchsim.simulation.trajectory import Array, Trajectory

@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.analysis.timegrapher import noises
-from watchsim.analysis.timing import beats, pitch
-from watchsim.scene.roles import keeps_time, roles, swings
+from watchsim.analysis.timing import beats
+from watchsim.scene.roles import keeps_time, pitch, roles, swings
 from watchsim.scene.scene import STATISTICS
 from watchsim.simulation.trajectory import Array as Array_of_trajectory
 from watchsim.simulation.trajectory import Trajectory

@@ -22,14 +22,12 @@ from watchsim.analysis.timing import (
     contact_numbers,
     is_recorded,
     last_window,
-    pitch,
-    toothed_loops,
 )
 from watchsim.geometry.loops import Loop, points_along
 from watchsim.mechanism.compile import Compiled, compile_scene
-from watchsim.scene.roles import drive_direction, keeps_time, oscillators, partners, roles
+from watchsim.scene.roles import drive_direction, keeps_time, oscillators, partners, pitch, roles, toothed_sides
 from watchsim.scene.scene import STATISTICS, Scene
-from watchsim.scene.trains import goes_with
+from watchsim.scene.teeth import touching_loops, train
 from watchsim.simulation import EVENT_DRIVEN
 from watchsim.simulation.recording import Pair
 from watchsim.simulation.state import EventKind
@@ -71,7 +69,7 @@ def teeth(scene: Scene, wheel: str) -> Teeth | None:
     whole = pitch(scene, wheel)
     if whole is None:
         return None
-    points = [_points(loop) for loop in toothed_loops(scene, wheel)]
+    points = [_points(loop) for loop in touching_loops(scene, toothed_sides(scene, wheel))]
     rim = max(float(np.abs(outline).max()) for outline in points)
     depth = HEIGHT * whole * rim
     outer, inner = (_middle(points, whole, rim - depth * deep, rim - depth * high) for high, deep in ((0.0, 0.5), (0.5, 1.0)))
@@ -261,7 +259,7 @@ class Watch:
 
         0 where that was not recorded.
         """
-        total, ratios = 0.0, goes_with(self.run.scene, self.wheel)
+        total, ratios = 0.0, train(self.run.scene, self.wheel)
         for torque in self.run.scene.torques:
             if torque.body not in ratios:
                 continue

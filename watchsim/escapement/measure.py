@@ -8,13 +8,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from watchsim.analysis.timing import pitch
 from watchsim.analysis.watch import Teeth, teeth
 from watchsim.escapement.by_hand import LEVEL, SLACK, Hands, Parts, Rest, Stretch, Sweep, Wheel, parts_of
 from watchsim.escapement.fork_and_pin import Balance, Direct, Entry, Fork, NotMeasured, Passage, Safety, fork, safety
 from watchsim.escapement.impulses import Impulse, Pallet, Roller, impulse, pallet
 from watchsim.mechanism.compile import Compiled, compile_scene
-from watchsim.scene.roles import hinged_pallets, oscillators
+from watchsim.scene.roles import hinged_pallets, oscillators, pitch
 from watchsim.scene.scene import Scene
 from watchsim.scene.trains import ungeared
 

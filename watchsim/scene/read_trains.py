@@ -141,7 +141,7 @@ def _bound(
     ways: dict[str, dict[str, float]] = {}  # ratio of the one for one unit of the other
     for table, gear in rigid:
         a, b = gear.between
-        if b in reached(ways, a):
+        if b in reached(lambda one: ways.get(one, {}), a):
             table.fault("between", f"{a} and {b} are bound to each other already, through other gears", with_value=True)
             continue
         ways.setdefault(a, {})[b] = gear.ratio
@@ -150,7 +150,13 @@ def _bound(
     for name in sorted(ways, key=lambda one: (ranks[one], list(known).index(one))):
         if name in found or any(geared.to == name for geared in found.values()):
             continue
-        found.update({other: Geared(name, ratio) for other, ratio in reached(ways, name).items() if other != name})
+        found.update(
+            {
+                other: Geared(name, ratio)
+                for other, ratio in reached(lambda one: ways.get(one, {}), name).items()
+                if other != name
+            }
+        )
     return found
 
 

@@ -1,7 +1,7 @@
 """Which body is the oscillator, which the escape wheel, which the lever?
 
 Names in a scene are free, so the roles follow from what the bodies do: the oscillator swings on a spring or as a pendulum,
-the wheel is driven, the lever touches both.
+the wheel is driven, if only through a train of gears, and locked by the lever, which touches both, or by the oscillator itself.
 """
 
 from __future__ import annotations
@@ -12,9 +12,10 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
 from watchsim.geometry.primitives import Point
-from watchsim.scene.forces import Spring
+from watchsim.scene.forces import Side, Spring
 from watchsim.scene.scene import Body, Scene
-from watchsim.scene.trains import Ride, Weighed, felt, goes_with, rides, weigh
+from watchsim.scene.teeth import FEWEST_TEETH, teeth_of, train
+from watchsim.scene.trains import Ride, Weighed, felt, rides, weigh
 
 # What swings about which rest position, by springs and by gravity, and how fast?
 #
@@ -192,17 +193,22 @@ class Roles:
 def roles(scene: Scene) -> Roles:
     """The first that swings, a driven pivoted body besides it, and a moving body in contact with both.
 
-    A body may be driven through gears, and touch by way of what it carries.
+    A body may be driven through gears, declared ones or teeth in contact, and touch by way of what it carries.
 
     Of several driven bodies the wheel is the first that has such a lever, whatever the order of the torques: a lever may be
-    knocked by a torque of its own.
+    knocked by a torque of its own. Without a lever it is the first that touches the oscillator; what else is driven stands
+    before it in the train, or belongs to another escapement.
     """
     oscillator = next((one.body for one in oscillators(scene)), None)
-    driven = [name for torque in scene.torques for name in goes_with(scene, torque.body) if torque.body != oscillator]
+    driven = [name for torque in scene.torques for name in train(scene, torque.body) if torque.body != oscillator]
     wheels = [name for name in driven if scene.body(name).motion == "pivot"]
-    found = [(wheel, None if oscillator is None else _lever(scene, oscillator, wheel)) for wheel in wheels]
-    wheel, lever = next((one for one in found if one[1] is not None), found[0] if found else (None, None))
-    return Roles(oscillator, wheel, lever)
+    if oscillator is None:
+        return Roles(None, wheels[0] if wheels else None, None)
+    for wheel in wheels:
+        if lever := _lever(scene, oscillator, wheel):
+            return Roles(oscillator, wheel, lever)
+    touched = partners(scene, oscillator).union(*(partners(scene, name) for name in _carried(scene, oscillator)))
+    return Roles(oscillator, next((name for name in wheels if name in touched), wheels[0] if wheels else None), None)
 
 
 def with_anchor(scene: Scene) -> Roles:
@@ -228,15 +234,48 @@ def hinged_pallets(scene: Scene) -> tuple[str, ...]:
 def _lever(scene: Scene, oscillator: str, wheel: str) -> str | None:
     both = partners(scene, oscillator) & partners(scene, wheel) - {oscillator, wheel}
     pivoted = [body.name for body in scene.bodies if body.motion == "pivot"]
-    direct = next((name for name in pivoted if name in both), None)
+    direct = next((name for name in pivoted if name in both and not _is_geared(scene, name, wheel)), None)
     return direct or next((name for name in pivoted if _reaches(scene, name, oscillator, wheel)), None)
+
+
+def _is_geared(scene: Scene, name: str, wheel: str) -> bool:
+    """Are the outlines with which a body touches the wheel those of a gear, and no pallets?"""
+    return teeth_of(scene, _sides(scene, name, {wheel})) >= FEWEST_TEETH
 
 
 def _reaches(scene: Scene, name: str, oscillator: str, wheel: str) -> bool:
     """Does the body touch both by way of what it carries, as a detent does with its passing spring?"""
-    own = {name} | {body.name for body in scene.bodies if body.on == name}
+    carried = _carried(scene, name)
+    own = {name} | carried
     touched = set().union(*(partners(scene, one) for one in own))
-    return not own & {oscillator, wheel} and {oscillator, wheel} <= touched
+    return bool(carried) and not own & {oscillator, wheel} and {oscillator, wheel} <= touched
+
+
+def _carried(scene: Scene, name: str) -> set[str]:
+    return {body.name for body in scene.bodies if body.on == name}
+
+
+def _sides(scene: Scene, name: str, others: set[str] | None = None) -> list[Side]:
+    """The sides of body `name` of its contacts, with some others only."""
+    pairs = [(a, b) for contact in scene.contacts for a, b in (contact.sides, contact.sides[::-1]) if a.body == name]
+    return [own for own, other in pairs if others is None or other.body in others]
+
+
+def pitch(scene: Scene, wheel: str) -> float | None:
+    """Angle (rad) from tooth to tooth of body `wheel`; None without equal teeth.
+
+    Of an escape wheel those teeth count with which it touches lever and oscillator, of other wheels all that touch something.
+    """
+    count = teeth_of(scene, toothed_sides(scene, wheel))
+    return math.tau / count if count > 1 else None
+
+
+def toothed_sides(scene: Scene, wheel: str) -> list[Side]:
+    """The sides of contacts that decide about a wheel's pitch."""
+    found = roles(scene)
+    ends = {one for one in (found.lever, found.oscillator) if one is not None}
+    ends = ends.union(*(_carried(scene, one) for one in ends)) if found.wheel == wheel else set()
+    return _sides(scene, wheel, ends) or _sides(scene, wheel)
 
 
 def swings(scene: Scene) -> bool:
@@ -280,7 +319,7 @@ def partners(scene: Scene, name: str) -> set[str]:
 
 def drive_direction(scene: Scene, name: str) -> float:
     """+1 or -1: the way the torques on body `name`, and on what is geared to it, turn it (the mean of a table)."""
-    total, ratios = 0.0, goes_with(scene, name)
+    total, ratios = 0.0, train(scene, name)
     for torque in scene.torques:
         if torque.body in ratios:
             mean = sum(value for _, value in torque.table) / len(torque.table) if torque.table else torque.value

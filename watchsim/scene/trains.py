@@ -293,20 +293,26 @@ def ungeared(scene: Scene) -> Scene:
 
 def goes_with(scene: Scene, name: str) -> dict[str, float]:
     """All bodies geared to one, with play or without, itself included: how far each goes for one unit of it."""
+    ways = gear_ways(scene)
+    return reached(lambda one: ways.get(one, {}), name)
+
+
+def gear_ways(scene: Scene) -> dict[str, dict[str, float]]:
+    """For each geared body the ones it is geared to, with play or without: how far they go for one unit of it."""
     ways: dict[str, dict[str, float]] = {}
     bound = [(body.geared.to, body.name, body.geared.ratio) for body in scene.bodies if body.geared is not None]
     for a, b, ratio in (*bound, *((*gear.between, gear.ratio) for gear in scene.gears)):
         ways.setdefault(a, {})[b] = ratio
         ways.setdefault(b, {})[a] = 1.0 / ratio
-    return reached(ways, name)
+    return ways
 
 
-def reached(ways: Mapping[str, Mapping[str, float]], name: str) -> dict[str, float]:
-    """All that `ways` join to a body, directly or not; `ways`: how far the one goes for one unit of the other."""
+def reached(ways: Callable[[str], Mapping[str, float]], name: str) -> dict[str, float]:
+    """All that `ways` join to a body, directly or not; `ways`: how far its neighbours go for one unit of a body."""
     found, left = {name: 1.0}, [name]
     while left:
         here = left.pop(0)
-        for other, ratio in ways.get(here, {}).items():
+        for other, ratio in ways(here).items():
             if other not in found:
                 found[other] = found[here] * ratio
                 left.append(other)

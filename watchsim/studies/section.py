@@ -15,14 +15,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.analysis.timing import pitch
 from watchsim.contact.cells import CellFinder
 from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.model import OVER_TIME, frozen
 from watchsim.scene.errors import SceneError
 from watchsim.scene.forces import Torque
-from watchsim.scene.roles import drive_direction, frequency, keeps_time, nominal_frequency, roles
+from watchsim.scene.roles import drive_direction, frequency, keeps_time, nominal_frequency, pitch, roles
 from watchsim.scene.scene import Scene
+from watchsim.scene.teeth import train
 from watchsim.scene.trains import bonds, rides
 from watchsim.simulation.event_loop import EVENTS_PER_CONTACT, ROWS_PER_STEP, advance
 from watchsim.simulation.options import Options, natural_step, options_for
@@ -39,6 +39,7 @@ class Parts:
 
     coordinate  of the oscillator; `body` its number in the scene; `level` where it stands in balance
     wheel       coordinate of the escape wheel, -1 without one; `sense` the way it is driven; `pitch` None without equal teeth
+    train       coordinates of all that turns with it, its own included: these go on and on, all others come back
     period      of small swings; `nominal` what the rate is measured against
     has_lever   True where a lever stands between the two
     touching    by contact: True where it touches the oscillator; a last False stands for no contact (-1)
@@ -48,6 +49,7 @@ class Parts:
     body: int
     level: float
     wheel: int
+    train: tuple[int, ...]
     sense: float
     pitch: float | None
     period: float
@@ -71,13 +73,17 @@ def parts_of(scene: Scene, compiled: Compiled) -> Parts | None:
     owner = model.primitives.body
     touching = np.append((owner[model.contacts.a] == body) | (owner[model.contacts.b] == body), False)
     # A wheel geared to another body stands where that one's coordinate says.
-    bond = bonds(scene.bodies, rides(scene.bodies))[names.index(found.wheel)] if found.wheel else None
+    bound = bonds(scene.bodies, rides(scene.bodies))
+    bond = bound[names.index(found.wheel)] if found.wheel else None
     part = pitch(scene, found.wheel) if found.wheel and keeps_time(scene) else None
     return Parts(
         coordinate,
         body,
         float(model.coordinates[coordinate].level),
         int(model.bodies[bond.to].first) if bond else -1,
+        tuple({int(model.bodies[bound[names.index(name)].to].first) for name in train(scene, found.wheel)})
+        if found.wheel
+        else (),
         drive_direction(scene, found.wheel) * math.copysign(1.0, bond.told) if found.wheel and bond else 1.0,
         part / abs(bond.told) if part and bond else None,
         1.0 / hertz,

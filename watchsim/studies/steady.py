@@ -237,9 +237,7 @@ def _moved_on(oscillate: ReturnMap, found: Fixed) -> Section | None:
         return None
     parts, loop = oscillate.parts, oscillate.loop
     away = np.abs(got.state.q - oscillate.section.state.q) / loop.compiled.model.coordinates.scale
-    away[parts.coordinate] = 0.0
-    if parts.wheel >= 0:
-        away[parts.wheel] = 0.0
+    away[[parts.coordinate, *parts.train]] = 0.0
     if (away <= REST).all():
         return None
     return section_from(loop, parts, got.state) if oscillate.section.touching else section_at(loop, parts, got.state, got.time)
