@@ -144,7 +144,7 @@ def holding_at_end(run: Trajectory) -> list[Pair]:
                 last[contact] = kind == EventKind.CLOSE
             elif kind == EventKind.HANDOVER:
                 last[int(value)], last[contact] = False, True
-    return [run.pairs[contact] for contact, closed in last.items() if closed]
+    return [run.pairs[contact] for contact in sorted(last) if last[contact]]
 
 
 # The first noise of a beat is the impulse pin meeting the fork. Rate and beat error are taken from it by every timegrapher,

@@ -37,6 +37,7 @@ from watchsim.analysis.verdict_kinds import (
 )
 from watchsim.analysis.watch import Arms, Face, Watch, arms, at_lever, face, in_force, unlocked, watch_of
 from watchsim.scene.roles import swings
+from watchsim.simulation.recording import LATE
 from watchsim.simulation.state import EventKind
 from watchsim.simulation.trajectory import Array, Trajectory
 from watchsim.storage.columns import rows_where
@@ -45,7 +46,6 @@ from watchsim.storage.columns import rows_where
 # still to come after the last is (c - b) r / (1 - r) with r = (c - b) / (b - a) (Aitken).
 
 FEWEST = 12  # half swings that three stretches take
-LONGEST = 120  # half swings that are looked at: those before may belong to another motion
 SETTLED = 2e-3  # of the amplitude: how far it may still have to go
 SURE = 3.0  # standard errors, beyond which a drift is one
 SLOWEST = 0.98  # ratio of steps, beyond which no end is foretold
@@ -53,27 +53,27 @@ SLOWEST = 0.98  # ratio of steps, beyond which no end is foretold
 
 def unsettled(watch: Watch) -> Verdict | None:
     """None where the amplitude will change by less than 0.2 %."""
-    found = watch.found
-    if len(found) < FEWEST:
-        words = f"not settled yet: {len(found)} half swings are too few to tell how the watch goes"
+    amplitude = np.degrees(watch.run.sums.get("late", watch.found.amplitude[-LATE:]))  # those before may be another motion
+    if len(amplitude) < FEWEST:
+        words = f"not settled yet: {len(amplitude)} half swings are too few to tell how the watch goes"
         return Verdict(UNSETTLED, words, body=watch.oscillator)
-    stretch = 2 * (min(len(found), LONGEST) // 6)  # half swings of both directions in each
-    parts = found.amplitude_deg[-3 * stretch :].reshape(3, stretch)
+    stretch = 2 * (len(amplitude) // 6)  # half swings of both directions in each
+    parts = amplitude[-3 * stretch :].reshape(3, stretch)
     steps, error = np.diff(parts.mean(axis=1)), _error(parts)
     if abs(steps[1]) <= SURE * error:
         return None
     ratio = steps[1] / steps[0] if steps[0] else np.inf
-    last, whole = float(found.amplitude_deg[-1]), float(parts[2].mean())
+    last, whole = float(amplitude[-1]), float(parts[2].mean())
     to_come = steps[1] * ratio / (1.0 - ratio) if 0.0 < ratio < SLOWEST else None
     goal = None if to_come is None else whole + to_come
     left = abs(steps[1]) if goal is None else abs(goal - last)
     if left <= SETTLED * whole:
         return None
-    per_second = steps[1] / (stretch * 0.5 * found.nominal_period)
+    per_second = steps[1] / (stretch * 0.5 * watch.found.nominal_period)
     words = f"not settled yet: the amplitude {'rises' if per_second > 0.0 else 'falls'} by {abs(per_second):.2g}° per second"
     words += f", on its way to about {goal:.{_decimals(abs(goal - last))}f}°" if goal is not None and goal > 0.0 else ""
     words += _rate(watch)
-    return Verdict(UNSETTLED, words, float(found.t[-1]), watch.oscillator, torque=watch.drive(watch.run.simulated))
+    return Verdict(UNSETTLED, words, float(watch.found.t[-1]), watch.oscillator, torque=watch.drive(watch.run.simulated))
 
 
 def _decimals(way: float) -> int:

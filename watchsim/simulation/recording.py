@@ -22,7 +22,7 @@ from watchsim.mechanism.compile import Compiled
 from watchsim.model import KIND_WORD
 from watchsim.scene.roles import nominal_frequency, roles
 from watchsim.scene.scene import ALL, STATISTICS, WHOLE_RUN, Recording, Scene, Window
-from watchsim.simulation.saved_state import TALLIED
+from watchsim.simulation.saved_state import TALLIED, TALLIED_LATER
 from watchsim.simulation.state import EVENT_DTYPE, EventKind
 from watchsim.storage.columns import Columns
 
@@ -197,6 +197,7 @@ def unevenness(marks: Array) -> Array:
 QUANTITIES = ("amplitude", "period", "uneven_ticks", "uneven_passages")
 MOMENTS = ("number", "mean", "squares", "least", "largest")  # squares: of the distances from the mean, summed
 CARRIED = 8  # passages whose events are carried on; a half swing needs four: its beat is compared with those of the two before
+LATE = 120  # half swings whose amplitudes are kept: whether a watch has settled is told by them
 MOST_CARRIED = 20000  # events, of an oscillator that makes noises but never passes its rest position
 
 
@@ -214,12 +215,13 @@ class Tally:
         self.beats = np.zeros(2, np.int64)  # half swings, and those with a tick
         self.moments = np.zeros((len(QUANTITIES), len(MOMENTS)))
         self.moments[:, 3:] = np.inf, -np.inf
+        self.late = np.zeros(0)  # amplitudes of the last half swings
         self.last = np.full(1, -np.inf)  # passage of the last half swing that was counted, s
         self.carried: Events = np.zeros(0, EVENT_DTYPE)
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """Everything, to be saved."""
-        return {name: np.array(getattr(self, name)) for name in TALLIED}
+        return {name: np.array(getattr(self, name)) for name in (*TALLIED, *TALLIED_LATER)}
 
     def restore(self, arrays: Mapping[str, NDArray[Any]]) -> None:
         """Go on from saved sums."""
@@ -257,6 +259,7 @@ class Tally:
         )
         for moments, value in zip(self.moments, values, strict=True):
             _add(moments, value[new & np.isfinite(value)])
+        self.late = np.append(self.late, values[0][new])[-LATE:]
         self.beats += (int(new.sum()), int(np.isfinite(ticks[new]).sum()))
         self.last[0] = np.max(t[new], initial=self.last[0])
 
@@ -268,7 +271,7 @@ class Tally:
         kinds = {kind.name.lower(): int(whole.kinds[kind]) for kind in EventKind}
         sums: dict[str, Any] = {"events_by_kind": kinds}
         if self.body >= 0:
-            sums |= {"half_swings": int(whole.beats[0]), "ticks": int(whole.beats[1])}
+            sums |= {"half_swings": int(whole.beats[0]), "ticks": int(whole.beats[1]), "late": whole.late.tolist()}
             for name, moments in zip(QUANTITIES, whole.moments.tolist(), strict=True):
                 sums[name] = dict(zip(MOMENTS, moments, strict=True)) if moments[0] else None
         return sums

@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 from watchsim.mechanism.compile import Compiled
 
 TALLIED = ("kinds", "beats", "moments", "last", "carried")
-LATER = ("returning", "returned")  # not in states of earlier versions: they begin blank
+TALLIED_LATER = ("late",)  # not in states of earlier versions: they begin blank
+LATER = ("returning", "returned")  # the same of the state itself
 REQUESTED = ("method", "step", "tolerance")
 
 
@@ -51,7 +52,7 @@ class SavedState:
             clock is not None
             and clock.shape == (3,)
             and all(np.isfinite(array).all() for array in self.arrays.values())
-            and set(self.tally) == set(TALLIED)
+            and set(TALLIED) <= set(self.tally) <= {*TALLIED, *TALLIED_LATER}
             and self._recorded_is_whole()
             and isinstance(self.settings, dict)
             and isinstance(self.stored_at_start, float)

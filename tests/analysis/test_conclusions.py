@@ -1,0 +1,67 @@
+"""Is what is concluded from a run the same whatever is recorded of it, and whatever train drives the escape wheel?"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from every_time import few
+from ordinary.geared_escapements import with_train
+
+import watchsim as ws
+from watchsim.scene.roles import Roles, oscillators, pitch, roles
+from watchsim.scene.scene import Scene
+
+OTHERWISE = {"wall_s", "compile_s", "realtime_factor", "kept", "scene_file", "versions", "counts", "expect"}
+
+
+def profile(name: str) -> Scene:
+    return ws.load(ws.profiles_dir() / name)
+
+
+SWINGING = sorted(
+    path.name for path in ws.profiles_dir().iterdir() if (path / "scene.toml").is_file() and oscillators(ws.load(path))
+)
+
+
+def concluded(scene: Scene, duration: float, record: str) -> dict[str, Any]:
+    numbers = ws.summary(ws.simulate(scene, duration, record=record))
+    return {key: value for key, value in numbers.items() if key not in OTHERWISE}
+
+
+def same_by_any_record(scene: Scene, duration: float) -> dict[str, Any]:
+    everything = concluded(scene, duration, "all")
+    assert concluded(scene, duration, "events") == everything
+    assert concluded(scene, duration, "statistics") == everything
+    return everything
+
+
+@pytest.mark.parametrize("name", few(SWINGING, lambda name: name in ("swiss_lever", "detent", "graham")))
+def test_what_is_recorded_changes_no_number(name: str) -> None:
+    same_by_any_record(profile(name), 8.0)
+
+
+def test_teeth_in_contact_are_gears() -> None:
+    """Four pairs, 30 teeth on 8: the wheel that the lever locks has 15 teeth, and a pinion of 8 on its arbor."""
+    from watchsim.scene.teeth import train
+
+    scene = with_train(profile("swiss_lever"), 4)
+    assert roles(scene) == Roles("balance", "wheel", "lever")
+    assert pitch(scene, "wheel") == pytest.approx(0.41887902047863906, rel=1e-12)
+    assert train(scene, "gear 4")["wheel"] == pytest.approx((30.0 / 8.0) ** 4, rel=1e-12)
+
+
+@pytest.mark.parametrize("name", few(["swiss_lever", "detent", "coaxial", "cylinder", "duplex"], 1))
+@pytest.mark.parametrize("pairs", few([1, 2, 3], lambda pairs: pairs == 2))
+def test_through_real_gears_it_goes_as_driven_directly(name: str, pairs: int) -> None:
+    """Without friction the wheel is driven as before, but for the play and inertia of the gears: it goes as far in as many
+    beats, and none is missed, whatever is recorded."""
+    scene = profile(name)
+    geared = with_train(scene, pairs)
+    assert roles(geared) == roles(scene)
+    numbers = same_by_any_record(geared, 8.0)
+    assert numbers["missed_beats"] == 0
+    assert numbers["verdict"] in ("ticks", "unsettled")
+    direct = concluded(scene, 8.0, "statistics")
+    assert numbers["amplitude_deg"] == pytest.approx(direct["amplitude_deg"], rel=0.02)
+    assert numbers["beats"] == direct["beats"]
