@@ -30,6 +30,7 @@ from watchsim.render.view import hairsprings, poses, zigzags
 from watchsim.scene.forces import LineSpring
 from watchsim.scene.load import load
 from watchsim.simulation.simulate import simulate
+from watchsim.simulation.state import EventKind
 from watchsim.simulation.trajectory import Trajectory
 
 pytestmark = pytest.mark.slow
@@ -257,6 +258,29 @@ def test_keys_play_step_zoom_and_fade(written: Path) -> None:
         page.wait_for_selector('#push[aria-pressed="true"]')
         assert page.evaluate("document.documentElement.dataset.theme") == "dark"
         assert page.said == []
+
+
+def test_stepping_events_reads_as_many_times_and_names_what_is_heard(run: Trajectory, written: Path) -> None:
+    start = float(run.t[-1]) - 0.3
+    times = np.unique(run.events["t"][(run.events["t"] > start) & (run.events["kind"] != EventKind.HANDOVER)])[:20]
+    with opened(written) as page:
+        page.evaluate("t => watchsim.seek(t)", start)
+        page.focus("#stage")
+        seen, noises = [], 0
+        for t in times.tolist():
+            page.keyboard.press(".")
+            page.wait_for_timeout(60)
+            seen.append(page.text_content("#time"))
+            assert abs(float(seen[-1].replace("\u202f", "").removesuffix(" s")) - t) < 1e-3
+            here = run.events[(run.events["t"] == t) & (run.events["kind"] == EventKind.IMPACT)]
+            if len(here):  # the strip names one of the pairs that met
+                noises += 1
+                named = page.text_content("#plots + .plot p span")
+                pairs = [run.pairs[k] for k in here["contact"].tolist()]
+                assert not named or any(f"{p.body_a} {p.layer_a} / {p.body_b} {p.layer_b}" in named for p in pairs)
+            dot, line = (page.locator(f".plot {which}").first.bounding_box() for which in (".dot", ".u-cursor-x"))
+            assert abs(dot["x"] + 0.5 * dot["width"] - line["x"]) < 2.0
+        assert len(set(seen)) == len(times) and noises > 3
 
 
 def test_a_click_follows_a_part(run: Trajectory, written: Path) -> None:

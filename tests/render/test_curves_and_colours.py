@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import io
+import itertools
+import math
+import re
 from collections.abc import Sequence
 from itertools import combinations
 from pathlib import Path
@@ -18,7 +21,7 @@ from matplotlib.colors import to_rgb, to_rgba
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.text import Text
-from render.colour_vision import VISIONS, least_difference
+from render.colour_vision import VISIONS, lab, least_difference, linear
 from render.fake_runs import watch_run
 from render.read_back import faults, width_mm
 
@@ -37,7 +40,6 @@ from watchsim.render.palette import (
     NIGHT,
     OTHERS,
     PHASE_LINES,
-    PHASES,
     RUBY,
     STEEL,
     Style,
@@ -327,9 +329,20 @@ def test_colours_of_curves_are_distinct(vision: str) -> None:
     assert least_difference(dict.fromkeys(PHASE_LINES.values()), vision) > 15.0
 
 
-@pytest.mark.parametrize("vision", VISIONS)
-def test_shades_of_phases_are_distinct_from_each_other_and_from_paper(vision: str) -> None:
-    assert least_difference((*dict.fromkeys(PHASES.values()), "#ffffff"), vision) > 9.0
+PAGE = {"light": "#fffdf9", "dark": "#1c2025"}  # behind the plots of a page
+
+
+@pytest.mark.parametrize("style", (LIGHT, DARK), ids=lambda style: style.name)
+def test_shades_of_phases_are_distinct_and_keep_their_hue(style: Style) -> None:
+    own = list(dict.fromkeys(style.phases.values()))
+    css = (Path(ws.__file__).parent / "pages" / "assets" / "page.css").read_text()
+    on_page = re.findall(r"--b(\d: #\w+);", css.split(f"--card: {PAGE[style.name]}")[1])[:5]
+    assert [f"{k}: {colour}" for k, colour in enumerate(own)] == on_page
+    for vision, ground in itertools.product(VISIONS, (PAGE[style.name], "#ffffff" if style is LIGHT else style.background)):
+        assert least_difference((*own, ground), vision) > 8.0
+    for name, shade in style.phases.items():
+        (_, a, b), (_, c, d) = lab(linear(shade)), lab(linear(PHASE_LINES[name]))
+        assert abs(math.remainder(math.atan2(b, a) - math.atan2(d, c), math.tau)) < 0.55, name
 
 
 @pytest.mark.parametrize("vision", VISIONS)

@@ -176,6 +176,7 @@ SCRIPTS = (
     "sound",
     "curves",
     "plots",
+    "strip",
     "player",
     "files",
     "main",

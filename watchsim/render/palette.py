@@ -26,7 +26,7 @@ FAINT = "#5b6168"
 GRID = "#ddd8ce"
 CONTACT = "#e8590c"
 FORCE = "#0b5fa5"
-PHASES = {  # of a beat; pale, to lie behind curves, and distinct for every kind of colour vision (tests/figures/test_colours)
+PHASES = {  # of a beat; pale, to lie behind curves, and distinct for every kind of colour vision
     "unlock": "#a6cee4",
     "catch-up": "#f5d999",
     "impulse": "#8cd3c0",
@@ -191,12 +191,12 @@ DARK = Style(
     contact="#ff9d5c",
     force="#7cc0ff",
     phases={
-        "unlock": "#5f2b30",
-        "catch-up": "#56461f",
-        "impulse": "#27502f",
-        "drop": "#3e3663",
-        "run to banking": "#23466a",
-        "recoil": "#5f2b30",
+        "unlock": "#1a4a76",
+        "catch-up": "#3d2f05",
+        "impulse": "#124a2e",
+        "drop": "#5a2a58",
+        "run to banking": "#6e3d1a",
+        "recoil": "#1a4a76",
     },
     shade=(0.0, 0.0, 0.0, 0.4),
 )
@@ -266,7 +266,7 @@ _KNOWN = {
     for own, other in (
         ("white", DARK.background),
         ("black", DARK.ink),
-        (SECOND, "#357049"),
+        (SECOND, "#23704a"),
         *((getattr(LIGHT, name), getattr(DARK, name)) for name in ("background", "ink", "faint", "grid", "contact", "force")),
         *((LIGHT.phases[name], DARK.phases[name]) for name in LIGHT.phases),
     )

@@ -8,6 +8,7 @@ const motion = new Motion(data), view = new View(data), scenery = new Scenery(da
 const player = new Player(data, { motion, view, scenery, solids, contacts, clock, sound });
 const curves = new Curves(data, motion, contacts, view);
 const plots = new Plots($("plots"), data, curves, (t) => { player.toggle(false); player.seek(t); });
+const strip = new Strip($("plots"), data, sound, (t) => { player.toggle(false); player.seek(t); });
 const stage = $("stage"), ctx = stage.getContext("2d");
 let look = {}, dirty = true, fps = 0, drawn = 0; // frames a second, and ms that the last one took to draw
 player.changed = () => { dirty = true; };
@@ -19,7 +20,7 @@ const readLook = () => {
   look = {
     dark, paper: colour("card"), ink: colour("ink"), faint: colour("faint"), grid: colour("line"), edgeLine: colour("edge"), accent: colour("accent"), cursor: colour("cursor"),
     contact: colour("contact"), force: colour("force"), shade: colour("shade"), ground: dark ? "#a9a498" : "#55524b", edge: dark ? "#d9d6cf" : "#23272c",
-    line: body ? (dark ? body.fill : body.line) : colour("ink"), phases: [0, 1, 2, 3, 4].map((k) => colour(`s${k}`)), font: style.fontFamily || "sans-serif",
+    line: body ? (dark ? body.fill : body.line) : colour("ink"), phases: [0, 1, 2, 3, 4].map((k) => colour(`s${k}`)), bands: [0, 1, 2, 3, 4].map((k) => colour(`b${k}`)), font: style.fontFamily || "sans-serif",
   };
 };
 const setTheme = (name) => {
@@ -31,9 +32,12 @@ const setTheme = (name) => {
 // Time as the plots tell it.
 const span = player.end - player.start;
 const timeText = (t) => {
-  const scale = timeScale(player.start, player.end), visible = (plots.range[1] - plots.range[0]) * scale.factor;
-  const value = minus(((t - scale.base) * scale.factor).toFixed(clamp(3 - Math.floor(Math.log10(visible)), 0, 6)));
-  return scale.base ? `${Number(scale.base.toPrecision(9))} s + ${value} ${scale.unit}` : `${value} ${scale.unit}`;
+  const visible = plots.range[1] - plots.range[0], { times } = player, i = upTo(times, t);
+  let digits = clamp(3 - Math.floor(Math.log10(visible)), 0, 9);
+  // Stepping from event to event, the time is read finely enough to tell one from the next.
+  if (!player.playing && times[i - 1] === t) for (const near of [times[i - 2], times[i]]) if (near !== undefined && near !== t) digits = Math.max(digits, Math.min(1 - Math.floor(Math.log10(Math.abs(near - t))), 9));
+  const [whole, part] = t.toFixed(digits).split(".");
+  return `${minus(whole)}${part ? `.${part.replace(/(\d{3})(?=\d)/g, "$1\u202f")}` : ""} s`;
 };
 
 const drawTrack = () => {
@@ -129,6 +133,7 @@ const frame = (now) => {
     player.draw(ctx, look);
     words();
     plots.draw(player.t, look);
+    strip.draw(player.t, look, plots.range);
     drawn = performance.now() - begun;
     const key = `${plots.range}|${look.dark}|${$("track").clientWidth}|${window.devicePixelRatio}`;
     if (key !== trackKey) { trackKey = key; drawTrack(); }
@@ -250,7 +255,7 @@ const toPaper = () => {
   for (const strip of document.querySelectorAll("#poster [data-coil]")) strip.setAttribute("d", scenery.coils[Number(strip.dataset.coil)].pathData(poses));
   for (const line of document.querySelectorAll("#poster [data-zigzag]")) line.setAttribute("d", scenery.zigzags[Number(line.dataset.zigzag)].pathData(view, poses));
   root.classList.add("paper"); // the plots take the size that they have there
-  plots.draw(player.t, look);
+  plots.draw(player.t, look); strip.draw(player.t, look, plots.range);
 };
 const toScreen = () => {
   root.classList.remove("paper");

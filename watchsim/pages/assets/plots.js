@@ -1,15 +1,13 @@
 // Plots under each other with one time axis and one cursor. Drawn by uPlot; here is what they show and how they are moved.
 const SIDES = [8, 12, 0, 0], AXIS = 50, FOOT = 24, SHORTEST = 1e-6;
 
-const decimals = (step) => clamp(-Math.floor(Math.log10(step) + 1e-9), 0, 9);
+const decimals = (step) => { for (let k = 0; k < 9; k++) if (Math.abs(step * 10 ** k - Math.round(step * 10 ** k)) < 1e-6) return k; return 9; };
 
-// Time in the unit that suits what is shown: after a round number of seconds where that is short.
+// Time in seconds; of a short stretch in µs from a whole millisecond on.
 const timeScale = (from, to) => {
   const length = to - from;
-  if (length >= 2) return { base: 0, factor: 1, unit: "s" };
-  const factor = length >= 2e-3 ? 1e3 : 1e6, power = 10 ** Math.ceil(Math.log10(length));
-  const base = to < 1 && length > 0.05 * to ? 0 : Math.floor(from / power + 1e-9) * power;
-  return { base, factor, unit: factor === 1e3 ? "ms" : "µs" };
+  if (length >= 0.01) return { base: 0, factor: 1, unit: "s" };
+  return { base: Math.floor(1e3 * from + 1e-9) / 1e3, factor: 1e6, unit: "µs" };
 };
 
 class Plots {
@@ -34,6 +32,8 @@ class Plots {
       this.host.append(box);
       const panel = { ...plot, field, name, read, fresh: false, shown: [0, 1] };
       panel.chart = new uPlot(this.options(panel), [[], ...plot.lines.map(() => [])], field);
+      // A dot of each line at the cursor: between the points of a curve, too.
+      panel.dots = panel.lines.map(() => { const dot = document.createElement("i"); dot.className = "dot"; panel.chart.over.append(dot); return dot; });
       this.listen(panel);
       return panel;
     });
@@ -98,8 +98,8 @@ class Plots {
     };
     return {
       width: 300, height: 132, padding: SIDES, legend: { show: false }, ms: 1,
-      cursor: { x: true, y: false, drag: { x: false, y: false }, points: { size: 8, stroke: colour("paper"), width: 1.2 }, bind: { mousemove: still, mouseenter: still, mouseleave: still, mousedown: still, mouseup: still, dblclick: still } },
-      scales: { x: { time: false, range: () => panel.shown }, y: { range: (_, low, high) => limits(low, high, panel.lines.some((line) => line.area)) } },
+      cursor: { x: true, y: false, drag: { x: false, y: false }, points: { show: false }, bind: { mousemove: still, mouseenter: still, mouseleave: still, mousedown: still, mouseup: still, dblclick: still } },
+      scales: { x: { time: false, range: () => panel.shown }, y: { range: () => panel.limits ?? [0, 1] } },
       axes: [{ ...axis, size: FOOT, gap: 3, space: 70, grid: { show: false }, border: { show: true, stroke: colour("edgeLine"), width: 1 }, ticks: { stroke: colour("edgeLine"), size: 4, width: 1 }, values: times }, { ...axis, size: AXIS, gap: 4, space: 24, ticks: { show: false }, values: told }],
       series: [{}, ...panel.lines.map((line) => ({ stroke: colour(line.colour), width: 1.7, pxAlign: 0, points: { show: false }, ...(line.area ? { fill: () => `${this.look[line.colour]}40`, fillTo: 0 } : {}) }))],
       hooks: { drawClear: [(chart) => this.shade(chart)] },
@@ -110,10 +110,9 @@ class Plots {
   shade(chart) {
     const { ctx, bbox } = chart, [from, to] = this.range, x = (t) => bbox.left + (clamp((t - from) / (to - from), 0, 1)) * bbox.width;
     ctx.save();
-    ctx.globalAlpha = 0.17;
     for (const [name, first, last] of this.phases) {
       if (last < from || first > to || !(name in PHASES)) continue;
-      ctx.fillStyle = this.look.phases[PHASES[name]];
+      ctx.fillStyle = this.look.bands[PHASES[name]];
       ctx.fillRect(x(first), bbox.top, Math.max(x(last) - x(first), 0.5), bbox.height);
     }
     ctx.restore();
@@ -127,7 +126,14 @@ class Plots {
       if (chart.width !== width || chart.height !== height) { chart.setSize({ width, height }); panel.fresh = false; }
       if (!panel.fresh) this.fill(panel);
       const [from, to] = this.range;
-      chart.setCursor({ left: ((t - from) / (to - from)) * (width - AXIS - SIDES[1]), top: 0 }, false, false);
+      const left = ((t - from) / (to - from)) * (width - AXIS - SIDES[1]);
+      chart.setCursor({ left, top: 0 }, false, false);
+      panel.dots.forEach((dot, k) => {
+        const line = panel.lines[k];
+        dot.style.background = look[line.colour];
+        dot.style.transform = `translate(${left}px, ${(1 - (line.value(t) / panel.factor - panel.limits[0]) / (panel.limits[1] - panel.limits[0])) * (height - FOOT - SIDES[0])}px)`;
+        dot.hidden = t < from || t > to;
+      });
       panel.read.replaceChildren(...panel.lines.map((line) => {
         const value = line.value(t), span = document.createElement("span");
         span.textContent = `${line.name ? `${line.name} ` : ""}${panel.metric ? metric(Math.abs(value) < 1e-6 * panel.size ? 0 : value, panel.unit) : `${minus(value.toFixed(panel.digits))} ${panel.unit}`.replace(" °", "°")}`;
@@ -145,6 +151,8 @@ class Plots {
     for (const curve of curves) for (const [, y] of curve) { low = Math.min(low, y); high = Math.max(high, y); }
     const size = Math.max(Math.abs(low), Math.abs(high));
     const [factor, prefix] = panel.metric ? PREFIXES.find(([least]) => size >= least) ?? [1e-12, "p"] : [1, ""];
+    panel.factor = factor;
+    panel.limits = limits(low / factor, high / factor, panel.lines.some((line) => line.area)); // uPlot takes its own with the next frame only
     panel.size = Math.max(high - low, 1e-12);
     panel.digits = clamp(3 - Math.floor(Math.log10(1.12 * panel.size)), 0, 6);
     panel.shown = [from, to].map((t) => (t - scale.base) * scale.factor);
