@@ -1,6 +1,6 @@
 """What breaks without each rule that guards a near-degenerate case?
 
-    python scripts/checks/price_of_rules.py FOLDER [--count N] [--start K] [--only PART] [SCENE.toml ...]
+    python scripts/checks/price_of_rules.py FOLDER [--count N] [--start K] [SCENE.toml ...]
     python scripts/checks/price_of_rules.py FOLDER --table
 
 In a copy of the package each rule gets a switch. Everything is run with all rules on, which also shows which of them took
@@ -19,12 +19,13 @@ import shutil
 import sys
 from collections import Counter
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
 ROOT = Path(__file__).resolve().parents[2]
 SEED = 32
-JUDGED = 40  # mechanisms of the hunt that are judged in full without a rule; of further ones only that run
+JUDGED, WRONG = 60, 3  # mechanisms judged without a rule, and wrong ones among them after which it has its price
 
 
 class Rule(NamedTuple):
@@ -45,7 +46,7 @@ CLOSING, FRICTION, IMPACT = "simulation/first_closing.py", "dynamics/friction.py
 FORCES, REDUNDANT, GAPS = "dynamics/acceleration.py", "dynamics/redundant.py", "contact/gaps.py"
 
 _NOTHING = "if normal == 0.0 and system.size[2 * i] == 0.0:"
-_BESIDE = "if room_beside_active(model, state.active, in_force, options, k, pose)[0] >= 0.0:"
+_BESIDE = "if room_beside_active(model, state.regime.active, in_force, options, k, pose)[0] >= 0.0:"
 
 RULES = (
     _rule("handover", CLOSED, "if successor != NO_CONTACT:", "if successor != NO_CONTACT and ON:"),
@@ -60,15 +61,17 @@ RULES = (
     _rule("sunk", CLOSING, "0, options.sunk) else 0.0", "0, options.sunk) and ON else 0.0"),
     _rule("parallel waits", CLOSED, "math.sqrt(own / other) > least:", "math.sqrt(own / other) > least and ON:"),
     _rule("landing", EVENTS, "if not left:", "if not left or not ON:"),
-    _rule("touched is closed", CLOSED, "if state.instant.touched != NO_CONTACT:", "if state.instant.touched != NO_CONTACT and ON:"),
+    _rule(
+        "touched is closed", CLOSED, "if state.instant.touched != NO_CONTACT:", "if state.instant.touched != NO_CONTACT and ON:"
+    ),
     _rule(
         "rates after gaps",
         EVENTS,
-        "        project_velocities(closed, m, state.mode",
-        "        if ON:\n            project_velocities(closed, m, state.mode",
+        "        project_velocities(closed, m, state.regime.mode",
+        "        if ON:\n            project_velocities(closed, m, state.regime.mode",
     ),
     _rule("slip against mode", EVENTS, "rest.kin[i].gT_dot < 0.0 else", "rest.kin[i].gT_dot < 0.0 and ON else"),
-    _rule("closing parts", MODES, "* gap_acceleration(rest, i, state.a):", "* gap_acceleration(rest, i, state.a) and ON:"),
+    _rule("closing parts", MODES, "* gap_acceleration(rest, i, out_a):", "* gap_acceleration(rest, i, out_a) and ON:"),
     _rule(
         "rates contradict",
         MODES,
@@ -83,21 +86,30 @@ RULES = (
         "    if not ON:\n        return False\n    event.decided[rest.ids[0]] = STICK\n",
     ),
     _rule("dead centre holds", MODES, "if u[one] == 0.0 and u[other] == 0.0:", "if u[one] == 0.0 and u[other] == 0.0 and ON:"),
-    _rule("rounded speeds", MODES, "VELOCITY_ROUNDING * event.peak_speed[j]:", "VELOCITY_ROUNDING * event.peak_speed[j] and ON:"),
+    _rule(
+        "rounded speeds", MODES, "VELOCITY_ROUNDING * event.peak_speed[j]:", "VELOCITY_ROUNDING * event.peak_speed[j] and ON:"
+    ),
     _rule("rounded slips", MODES, "options.speed_zero < slip <= rounding", "options.speed_zero < slip <= rounding and ON"),
     _rule("jam holds gaps", MODES, "    hold_gaps(model, r", "    if ON:\n        hold_gaps(model, r"),
     _rule("release pulling", MODES, "        if not found:", "        if not found or not ON:"),
     _rule("modes recur", MODES, "if decided[j] == key:", "if decided[j] == key and ON:"),
     _rule("slow rebounds", IMPACTS, "if slowly and rate >", "if slowly and ON and rate >"),
     _rule("hidden rebounds", IMPACTS, " or hidden:", " or (hidden and ON):"),
-    _rule("accumulation", IMPACTS, "if ending < options.accumulation_time or", "if (ending < options.accumulation_time and ON) or"),
+    _rule(
+        "accumulation", IMPACTS, "if ending < options.accumulation_time or", "if (ending < options.accumulation_time and ON) or"
+    ),
     _rule(
         "closing play",
         IMPACTS,
         "if hit and _comes_back_endlessly(watch, time, options, event.closed.ids[i], rate):",
         "if hit and _comes_back_endlessly(watch, time, options, event.closed.ids[i], rate) and ON:",
     ),
-    _rule("chatter", IMPACTS, "may_be_chatter(m, options, event, room):\n        _", "may_be_chatter(m, options, event, room) and ON:\n        _"),
+    _rule(
+        "chatter",
+        IMPACTS,
+        "may_be_chatter(m, options, event, room):\n        _",
+        "may_be_chatter(m, options, event, room) and ON:\n        _",
+    ),
     _rule("chatter pressed", IMPACTS, "if apart and 0.0 < time < math.inf:", "if apart and 0.0 < time < math.inf and ON:"),
     _rule("energy rescue", IMPACTS, "if gain <= ENERGY_GAIN * kinetic:", "if gain <= ENERGY_GAIN * kinetic or not ON:"),
     _rule("orientation", FRICTION, "if direction < 0.0:", "if direction < 0.0 and ON:"),
@@ -125,8 +137,18 @@ RULES = (
     _rule("jams grip more", IMPACT, "<= PAINLEVE * own:", "<= PAINLEVE * own and ON:"),
     _rule("jams approach", IMPACT, "<= jam_speed < slip:", "<= jam_speed < slip and ON:"),
     _rule("parallel directions", IMPACT, "if e >= 0 and is_parallel(G, i):", "if e >= 0 and is_parallel(G, i) and ON:"),
-    _rule("jams under force", FORCES, "_slides_into_jam(system, m, i, problem):\n            return False", "_slides_into_jam(system, m, i, problem) and ON:\n            return False"),
-    _rule("least force jams", FORCES, "if not pressed and _slides_into_jam(system, m, i, problem):", "if not pressed and _slides_into_jam(system, m, i, problem) and ON:"),
+    _rule(
+        "jams under force",
+        FORCES,
+        "_slides_into_jam(system, m, i, problem):\n            return False",
+        "_slides_into_jam(system, m, i, problem) and ON:\n            return False",
+    ),
+    _rule(
+        "least force jams",
+        FORCES,
+        "if not pressed and _slides_into_jam(system, m, i, problem):",
+        "if not pressed and _slides_into_jam(system, m, i, problem) and ON:",
+    ),
     _rule("jam watched", MOTION, "-1.0 if slides_into_jam else", "-1.0 if slides_into_jam and ON else"),
     _rule(
         "slides by its end of the cone",
@@ -140,23 +162,58 @@ RULES = (
     _rule("rounding passed on", FORCES, "        if i != row // 2:", "        if i != row // 2 and ON:"),
     _rule("nothing acts", MOTION, _NOTHING, f"{_NOTHING[:-1]} and ON:"),
     _rule("sunk is no drift", MOTION, "drifted = gap >= -behind and", "drifted = (gap >= -behind or not ON) and"),
-    _rule("not along the face", MOTION, "<= TAKEN_BACK_ALONG * behind * G[row, row]", "<= TAKEN_BACK_ALONG * behind * G[row, row] or not ON"),
-    _rule("gaps met first", MOTION, "if not _close(closed, n, both, behind, projection):", "if not _close(closed, n, both, behind, projection) and ON:"),
+    _rule(
+        "not along the face",
+        MOTION,
+        "<= TAKEN_BACK_ALONG * behind * G[row, row]",
+        "<= TAKEN_BACK_ALONG * behind * G[row, row] or not ON",
+    ),
+    _rule(
+        "gaps met first",
+        MOTION,
+        "if not _close(closed, n, both, behind, projection):",
+        "if not _close(closed, n, both, behind, projection) and ON:",
+    ),
     _rule("nearly determined", MOTION, "if own <= independent * easiest:", "if own <= independent * easiest and ON:"),
     _rule("smallest forces", FORCES, "    if rank < n:", "    if rank < n and ON:"),
     _rule("lawful forces", REDUNDANT, "if worst >= -LAW_SLACK * largest:", "if worst >= -LAW_SLACK * largest or not ON:"),
     _rule(
         "laws with slack",
         REDUNDANT,
-        "        for line in range(laws):\n            value[line] += redundant.slack[line]",
-        "        if not ON:\n            return\n        for line in range(laws):\n            value[line] += redundant.slack[line]",
+        "        for line in range(laws):\n            value[line] += ",
+        "        if not ON:\n            return\n        for line in range(laws):\n            value[line] += ",
     ),
-    _rule("along a law", REDUNDANT, "if abs(gain) > LAW_ROUNDING else", "if abs(gain) > LAW_ROUNDING or (gain != 0.0 and not ON) else"),
+    _rule(
+        "along a law",
+        REDUNDANT,
+        "if abs(gain) > LAW_ROUNDING else",
+        "if abs(gain) > LAW_ROUNDING or (gain != 0.0 and not ON) else",
+    ),
     _rule("closes without drift", LOOP, "    if touched != NO_CONTACT:", "    if touched != NO_CONTACT and ON:"),
-    _rule("gaps turn rates", LOOP, "if _turns_rates(model, state.u, options, m, closed):", "if _turns_rates(model, state.u, options, m, closed) and ON:"),
-    _rule("before the end", "simulation/integrator.py", "state.instant.awake_contacts > 1):", "state.instant.awake_contacts > 1 and ON):"),
-    _rule("still points", CLOSING, "            if wait < FINE_LOOK * (end - tau):", "            if wait < FINE_LOOK * (end - tau) and ON:"),
-    _rule("points apart", CLOSING, "if outside and safe < FINE_LOOK * (end - tau):", "if outside and safe < FINE_LOOK * (end - tau) and ON:"),
+    _rule(
+        "gaps turn rates",
+        LOOP,
+        "if _turns_rates(model, state.u, options, m, closed):",
+        "if _turns_rates(model, state.u, options, m, closed) and ON:",
+    ),
+    _rule(
+        "before the end",
+        "simulation/integrator.py",
+        "smooth.held.contacts > 1):",
+        "smooth.held.contacts > 1 and ON):",
+    ),
+    _rule(
+        "still points",
+        CLOSING,
+        "            if wait < FINE_LOOK * (end - tau):",
+        "            if wait < FINE_LOOK * (end - tau) and ON:",
+    ),
+    _rule(
+        "points apart",
+        CLOSING,
+        "if outside and safe < FINE_LOOK * (end - tau):",
+        "if outside and safe < FINE_LOOK * (end - tau) and ON:",
+    ),
 )
 
 SWITCH = '''
@@ -199,17 +256,18 @@ def copied(folder: Path) -> None:
                 raise SystemExit(f"{rule.name}: {file} has no {old!r}")
             text = text.replace(old, re.sub(r"\bON\b", f"switched({k})", new))
             if "from watchsim.jit import switched\n" not in text:
-                text = text.replace("from watchsim.jit import ", "from watchsim.jit import switched\nfrom watchsim.jit import ", 1)
+                text = text.replace(
+                    "from watchsim.jit import ", "from watchsim.jit import switched\nfrom watchsim.jit import ", 1
+                )
             path.write_text(text)
 
 
-Case = tuple[str, Callable[[], Any], Callable[[], str]]  # its name, a run to compare, and a verdict ("" where all is well)
+Case = tuple[str, Callable[[], Any], Callable[[], str] | None]  # its name, a run to compare, a verdict ("" where all is well)
 
 
 def cases(args: argparse.Namespace) -> Iterator[Case]:
     """Everything that is run."""
     from hunt.generator.generate import mechanism
-    from hunt.hunt_mechanisms import judged_file
     from hunt.judge import _Clock, judged
     from recorded_scenes import all_names, run_of, scene_of, told
 
@@ -218,7 +276,11 @@ def cases(args: argparse.Namespace) -> Iterator[Case]:
     from watchsim.verification import benchmarks, hard_cases, repeated_impacts
     from watchsim.verification.verify import rows_of
 
-    def verdict(found: Any) -> str:
+    def recorded(name: str) -> Any:
+        return vars(told(run_of(scene_of(name))))
+
+    def verdict(scene: Any, number: int) -> str:
+        found = judged(scene, number)
         return "" if found.kind in ("fine", "sensitive") else f"{found.kind}: {found.reasons[0]}"
 
     def motion(scene: Any) -> Any:
@@ -228,26 +290,19 @@ def cases(args: argparse.Namespace) -> Iterator[Case]:
     def wrong(benchmark: Any) -> str:
         return "; ".join(row["quantity"] for row in rows_of([benchmark]) if not row["ok"])
 
-    if args.only in (None, "verify"):
-        for make in (benchmarks.inclines, benchmarks.swings, hard_cases.hard_cases, hard_cases.edge_cases, repeated_impacts.repeated_impacts):
-            for one in make():
-                yield f"verify/{one.name}", lambda one=one: motion(one.scene), lambda one=one: wrong(one)
-    if args.only in (None, "kept"):
-        for path in (*sorted((ROOT / "tests/data/hunt").glob("*.toml")), *args.scenes):
-            yield f"kept/{path.stem}", lambda path=path: motion(load(path)), lambda path=path: verdict(judged_file(path))
-    if args.only in (None, "recorded"):
-        for name in all_names(100):
-            yield f"recorded/{name}", lambda name=name: vars(told(run_of(scene_of(name)))), lambda: ""
-    if args.only in (None, "hunt"):
-        for k in range(args.start, args.start + args.count):
-            yield (
-                f"hunt/{k}",
-                lambda k=k: motion(mechanism(SEED, k)),
-                lambda k=k: verdict(judged(mechanism(SEED, k), k)),
-            )
+    made = (benchmarks.inclines, benchmarks.swings, hard_cases.hard_cases, hard_cases.edge_cases)
+    for one in (case for make in (*made, repeated_impacts.repeated_impacts) for case in make()):
+        yield f"verify/{one.name}", partial(motion, one.scene), partial(wrong, one)
+    for path in (*sorted((ROOT / "tests/data/hunt").glob("*.toml")), *args.scenes):
+        yield f"kept/{path.stem}", partial(motion, load(path)), partial(verdict, load(path), 0)
+    for k in range(args.start, args.start + args.count):
+        scene = mechanism(SEED, k)
+        yield f"hunt/{k}", partial(motion, scene), partial(verdict, scene, k)
+    for name in all_names(100):
+        yield f"recorded/{name}", partial(recorded, name), None
 
 
-def priced(case: Case, switches: Any, judged: Counter[str]) -> dict[str, Any]:
+def priced(case: Case, switches: Any, judged: Counter[str], wrong: Counter[str]) -> dict[str, Any]:
     """Which rules took effect in a case, which moved it, and what is wrong without them."""
     name, run, verdict = case
     switches[:] = 0
@@ -262,16 +317,18 @@ def priced(case: Case, switches: Any, judged: Counter[str]) -> dict[str, Any]:
             if repr(run()) == base:
                 continue
             what = None
-            if not name.startswith("hunt") or judged[RULES[k].name] < JUDGED:
-                judged[RULES[k].name] += name.startswith("hunt")
+            if verdict and (name.startswith("verify") or (judged[RULES[k].name] < JUDGED and wrong[RULES[k].name] < WRONG)):
                 what = verdict()
         except Exception as error:
             what = f"crashed: {error}"
-        if what:
+        if what and verdict:
             switches[:] = 0
             sound = not verdict() if sound is None else sound
             what = what if sound else ""
         found["moved"][RULES[k].name] = what
+        if not name.startswith("verify"):
+            judged[RULES[k].name] += what is not None
+            wrong[RULES[k].name] += bool(what)
     return found
 
 
@@ -296,7 +353,6 @@ def main() -> int:
     parser.add_argument("scenes", type=Path, nargs="*")
     parser.add_argument("--count", type=int, default=2000)
     parser.add_argument("--start", type=int, default=0)
-    parser.add_argument("--only", choices=("verify", "kept", "recorded", "hunt"))
     parser.add_argument("--table", action="store_true")
     args = parser.parse_args()
     kept = args.folder / "found.jsonl"
@@ -309,14 +365,15 @@ def main() -> int:
     sys.path[:0] = [str(args.folder / part) for part in (".", "scripts", "tests/simulation")]
     from watchsim import jit
 
-    assert Path(jit.__file__).is_relative_to(args.folder)
-    done, judged = {line["case"] for line in lines}, Counter()
-    for line in lines:
-        judged.update(name for name, what in line["moved"].items() if what is not None and line["case"].startswith("hunt"))
+    switches = vars(jit)["SWITCHES"]
+    done = {line["case"] for line in lines}
+    moved = [found for line in lines if not line["case"].startswith("verify") for found in line["moved"].items()]
+    judged = Counter(name for name, what in moved if what is not None)
+    wrong = Counter(name for name, what in moved if what)
     for case in cases(args):
         if case[0] not in done:
             try:
-                found = priced(case, jit.SWITCHES, judged)
+                found = priced(case, switches, judged, wrong)
             except Exception as error:
                 found = {"case": case[0], "took": [], "moved": {}, "error": repr(error)}
             with kept.open("a") as file:

@@ -69,8 +69,12 @@ def test_a_run_begins_awake_with_an_event_and_knows_on_which_side_springs_are() 
     assert (state.q.tolist(), state.u.tolist(), state.a.tolist()) == ([0.6, 0.4, 0.9], [-1.0, 2.0, -0.5], [0.0] * 3)
     assert (state.instant.event_waits, state.instant.touched, state.instant.lenience) == (1, NO_CONTACT, 1.0)
     assert (state.returning.contact, state.clock.time, state.instant.awake_contacts) == (NO_CONTACT, 0.0, 0)
-    assert state.awake.tolist() == [1] * 3 and state.grip.tolist() == [0] * 3 and state.mode.tolist() == [0] * 5
-    assert (len(state.active), len(state.upto), len(state.decided)) == (48, 48, 32)
+    assert (
+        state.regime.awake.tolist() == [1] * 3
+        and state.regime.grip.tolist() == [0] * 3
+        and state.regime.mode.tolist() == [0] * 5
+    )
+    assert (len(state.regime.active), len(state.regime.upto), len(state.decided)) == (48, 48, 32)
     assert state.side_u.tolist() == [-1, 1, 1]  # -0.5 against -1
     assert state.side_q.tolist() == [1, -1, 1]  # 0.9 against 0.6 + 0.25
 

@@ -94,8 +94,8 @@ def test_no_set_of_modes_is_decided_twice_on_the_same_terms() -> None:
     seen: list[tuple[int, float]] = []
     for turn in range(1000):
         instant.awake_contacts = turn % 2
-        state.mode[0] = 1 + turn % 2
-        if not once(key(state), state.decided, instant):
+        state.regime.mode[0] = 1 + turn % 2
+        if not once(key(state.regime, instant), state.decided, instant):
             break
         terms = (turn % 2, float(instant.lenience))
         seen.append(terms)
@@ -104,9 +104,9 @@ def test_no_set_of_modes_is_decided_twice_on_the_same_terms() -> None:
     assert {lenience for _, lenience in seen} == {LENIENCE_STEP**power for power in range(8)}
     begin(instant)
     assert instant.lenience == 1.0
-    assert once(key(state), state.decided, instant)
+    assert once(key(state.regime, instant), state.decided, instant)
     instant.decisions = 0
-    assert once(key(state), state.decided, instant)  # after an impact the same modes may come again
+    assert once(key(state.regime, instant), state.decided, instant)  # after an impact the same modes may come again
     assert instant.lenience == 1.0
 
 

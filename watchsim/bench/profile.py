@@ -35,8 +35,16 @@ from watchsim.simulation.impacts import approaching, collide
 from watchsim.simulation.modes import decide, set_rate_zeros
 from watchsim.simulation.options import OptionsRef
 from watchsim.simulation.runner import Run, trajectory_of
-from watchsim.simulation.scratch import Record, RecordRef, Until, new_record, new_until, scratch_by_reference
-from watchsim.simulation.state import COUNT_NAMES, State, StateRef, Stop, arrays_of, copy_of_state, room_for, write_state
+from watchsim.simulation.scratch import (
+    Record,
+    RecordRef,
+    Until,
+    new_record,
+    new_until,
+    scratch_by_reference,
+    state_by_reference,
+)
+from watchsim.simulation.state import COUNT_NAMES, State, Stop, arrays_of, copy_of_state, room_for, write_state
 from watchsim.simulation.trajectory import Trajectory
 
 # Each entry takes the number of repeats last. Nothing depends on these entries, so they are not among the sources that `jit`
@@ -65,7 +73,13 @@ def moments_again(model, cells, state, own, moment, options, until, scratch, rec
 @jit.entry
 def touches_again(model, cells, state, options, end, scratch, repeats):
     """The search for the first contact that closes in the step's first `end` seconds."""
-    m, c, s, o, w = ModelRef(*model), CellsRef(*cells), StateRef(*state), OptionsRef(*options), scratch_by_reference(scratch)
+    m, c, s, o, w = (
+        ModelRef(*model),
+        CellsRef(*cells),
+        state_by_reference(state),
+        OptionsRef(*options),
+        scratch_by_reference(scratch),
+    )
     total = 0.0
     for _ in range(repeats):
         total += first_touch(m, c, s, o, end, w)[1]
@@ -88,19 +102,25 @@ def lookups_again(model, cells, q, repeats):
 @jit.entry
 def evaluations_again(model, state, options, scratch, repeats):
     """The accelerations of coupled bodies with all monitors."""
-    m, s, o, w = ModelRef(*model), StateRef(*state), OptionsRef(*options), scratch_by_reference(scratch)
+    m, s, o, w = ModelRef(*model), state_by_reference(state), OptionsRef(*options), scratch_by_reference(scratch)
     n = len(s.q)
     w.smooth.y[:n], w.smooth.y[n : 2 * n] = s.q, s.u
-    engage(m, s, w.smooth)
+    engage(m, s.regime.active, s.instant, w.smooth)
     for _ in range(repeats):
-        motion(m, s, o, s.clock.time, w.work, w.smooth)
+        motion(m, s.regime, o, s.clock.time, w.smooth, s.counts)
     return w.smooth.dy[0]
 
 
 @jit.entry
 def impacts_again(model, cells, state, options, scratch, record, collides, repeats):
     """The impacts of the event that waits, island by island, or only what brings back the velocities before them."""
-    m, c, s, o, w = ModelRef(*model), CellsRef(*cells), StateRef(*state), OptionsRef(*options), scratch_by_reference(scratch)
+    m, c, s, o, w = (
+        ModelRef(*model),
+        CellsRef(*cells),
+        state_by_reference(state),
+        OptionsRef(*options),
+        scratch_by_reference(scratch),
+    )
     r, before = RecordRef(*record), w.smooth.y[: len(s.u)]
     copy(s.u, before)
     count, first = gathered(m, c, s, o, w), 0
@@ -135,7 +155,13 @@ def gathered(model, cells, state, options, scratch):
 @jit.entry
 def pose(model, cells, state, options, scratch, record, which):
     """Leave one problem of the event that waits, of the first island that has it, in `scratch.work`; returns its size or 0."""
-    m, c, s, o, w = ModelRef(*model), CellsRef(*cells), StateRef(*state), OptionsRef(*options), scratch_by_reference(scratch)
+    m, c, s, o, w = (
+        ModelRef(*model),
+        CellsRef(*cells),
+        state_by_reference(state),
+        OptionsRef(*options),
+        scratch_by_reference(scratch),
+    )
     r, posed = RecordRef(*record), w.work.problem.last
     r.used.rows, r.used.events, posed.level = 0, 0, Level.NONE
     count, first = gathered(m, c, s, o, w), 0
@@ -149,7 +175,7 @@ def pose(model, cells, state, options, scratch, record, which):
             if hit:
                 collide(m, s, island, size, o, 0.0, w, r)
                 posed.level = Level.NONE
-            decide(m, s, island, size, o, w.work, w.event, w.impact.grip)
+            decide(m, s, island, size, o, w.work.system, w.work.problem, w.event, w.impact.grip)
         elif hit:
             for i in range(size):
                 restitution = law_of(m, w.event.closed.ids[i]).restitution

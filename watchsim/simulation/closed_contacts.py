@@ -128,9 +128,9 @@ def _successor(model, cells, q, mode, options, k, pose, asked, out_counts):
 @kernel
 def hand_over(model, cells, state, options, scratch, record):
     """Pass contacts that left their primitives to their neighbours. Poses must be current; False where a cell is unknown."""
-    moved, event, mode = False, scratch.event, state.mode
+    moved, event, mode = False, scratch.event, state.regime.mode
     for j in range(state.instant.awake_contacts + state.instant.sleeping_contacts):
-        k = state.active[j]
+        k = state.regime.active[j]
         if extent_margin(model, k, event.pose) >= -LEFT_PRIMITIVE * options.extent:
             continue
         known, successor = _successor(model, cells, state.q, mode, options, k, event.pose, scratch.asked, state.counts)
@@ -138,12 +138,12 @@ def hand_over(model, cells, state, options, scratch, record):
             return False
         if successor != NO_CONTACT:
             mode[successor], mode[k] = mode[k], OPEN
-            state.active[j] = successor
+            state.regime.active[j] = successor
             keep_event(record, state.clock, state.counts, EventKind.HANDOVER, successor, -1, float(k))
             moved = True
     if moved:
         # Take back what the way beyond the primitive's end has done to the velocities: normals differ by the turn there.
-        m = place_contacts(model, state.active, 0, state.instant.awake_contacts, event.pose, event.closed)
+        m = place_contacts(model, state.regime.active, 0, state.instant.awake_contacts, event.pose, event.closed)
         inverse = scratch.work.system.inverse
         project_velocities(event.closed, m, mode, DEPENDENT_IN_STEPS, inverse, scratch.projection, state.u)
         place(model, state.q, state.u, event.pose)
@@ -155,12 +155,12 @@ def release_left(model, state, options, pose, record):
     """Open the contacts that have left their primitives without a successor."""
     kept, awake, instant = 0, 0, state.instant
     for j in range(instant.awake_contacts + instant.sleeping_contacts):
-        k = state.active[j]
+        k = state.regime.active[j]
         if extent_margin(model, k, pose) < -LEFT_PRIMITIVE * options.extent:
-            state.mode[k] = OPEN
+            state.regime.mode[k] = OPEN
             keep_event(record, state.clock, state.counts, EventKind.OPEN, k, -1, 0.0)
             continue
-        state.active[kept] = k
+        state.regime.active[kept] = k
         kept += 1
         if j < instant.awake_contacts:
             awake += 1
@@ -190,13 +190,17 @@ def gather(model, cells, state, options, asked, pose, out_ids):
     """
     m, in_force = 0, state.instant.awake_contacts + state.instant.sleeping_contacts
     for j in range(in_force):
-        m = insert(out_ids, m, state.active[j])
+        m = insert(out_ids, m, state.regime.active[j])
     # The contact that has just touched is closed, even where taking back drift has moved its gap since.
     if state.instant.touched != NO_CONTACT:
         m = insert(out_ids, m, state.instant.touched)
     for p in range(len(model.pairs)):
         pair = model.pairs[p]
-        if is_at_rest(model, state.awake, pair.a) and is_at_rest(model, state.awake, pair.b) and state.clock.time > 0.0:
+        if (
+            is_at_rest(model, state.regime.awake, pair.a)
+            and is_at_rest(model, state.regime.awake, pair.b)
+            and state.clock.time > 0.0
+        ):
             continue
         how, start, count = candidates(model, cells, p, state.q)
         if how == UNKNOWN:
@@ -206,11 +210,11 @@ def gather(model, cells, state, options, asked, pose, out_ids):
             state.counts.cells_looked_up += 1
         for row in range(start, start + count):
             k = candidate(model, cells, how, row)
-            if state.mode[k] != OPEN:
+            if state.regime.mode[k] != OPEN:
                 continue
             gap = normal_gap(model, k, pose).gap
             if -options.behind <= gap <= options.gap_close and extent_margin(model, k, pose) >= -options.extent:
-                if room_beside_active(model, state.active, in_force, options, k, pose)[0] >= 0.0:
+                if room_beside_active(model, state.regime.active, in_force, options, k, pose)[0] >= 0.0:
                     continue
                 if m == len(out_ids):
                     return Stop.TOO_MANY_CONTACTS, m
@@ -283,8 +287,8 @@ def drop_immovable(model, state, m, event, record):
     for i in range(m):
         k = closed.ids[i]
         if is_immovable(model, closed, i):
-            if state.mode[k] != OPEN:
-                state.mode[k] = OPEN
+            if state.regime.mode[k] != OPEN:
+                state.regime.mode[k] = OPEN
                 keep_event(record, state.clock, state.counts, EventKind.OPEN, k, -1, 0.0)
             continue
         if kept < i:

@@ -308,35 +308,35 @@ def _will_change(model, table, t):
 
 
 @kernel
-def find_sleepers(model, state, options, event, f):
-    """Set `state.awake`: an island with a contact or a bearing that holds sleeps if it is still and nothing depends on time.
+def find_sleepers(model, regime, options, time, event, f, out_u, out_a):
+    """Set `regime.awake`: an island with a contact or a bearing that holds sleeps if it is still and nothing depends on time.
 
-    The f contacts in force are in `state.active`, their islands in `event.label`, accelerations in `state.a`, the
-    magnitudes of the forces on each coordinate in `event.terms`.
+    The f contacts in force are in `regime.active`, their islands in `event.label`, the magnitudes of the forces on each
+    coordinate in `event.terms`. What sleeps has neither velocity nor acceleration.
     """
     label, touched = event.label, event.touched
     n = len(label)
     for i in range(n):
-        state.awake[i] = 0
+        regime.awake[i] = 0
     touched[:] = 0
     for j in range(f):
-        touched[island_of(model, label, state.active[j])] = 1
+        touched[island_of(model, label, regime.active[j])] = 1
     _share_terms(model, event.terms)
     for i in range(n):
-        if state.grip[i] == STICK:
+        if regime.grip[i] == STICK:
             touched[label[i]] = 1
     for i in range(n):
-        if touched[label[i]] == 0 or not _is_still(model.coordinates[i], state.u[i], state.a[i], options, event.terms[i]):
-            _wake(label, label[i], state.awake)
+        if touched[label[i]] == 0 or not _is_still(model.coordinates[i], out_u[i], out_a[i], options, event.terms[i]):
+            _wake(label, label[i], regime.awake)
     for j in range(len(model.tables)):
-        if _will_change(model, model.tables[j], state.clock.time):
-            _wake(label, label[model.tables[j].coordinate], state.awake)
+        if _will_change(model, model.tables[j], time):
+            _wake(label, label[model.tables[j].coordinate], regime.awake)
     for i in range(n):
         if model.coordinates[i].driven:
-            _wake(label, label[i], state.awake)
+            _wake(label, label[i], regime.awake)
     for i in range(n):
-        if state.awake[i] == 0:
-            state.u[i], state.a[i] = 0.0, 0.0
+        if regime.awake[i] == 0:
+            out_u[i], out_a[i] = 0.0, 0.0
 
 
 @kernel
@@ -421,29 +421,29 @@ def _watch(mode, lenience, options, m, system, modes, closed, out_monitors):
 
 
 @kernel
-def engage(model, state, smooth):
+def engage(model, active, instant, smooth):
     """Find the bodies that the active contacts join, the only ones whose places matter while the modes last."""
+    smooth.held.contacts, smooth.held.lenience = instant.awake_contacts, instant.lenience
     smooth.engaged[:] = 0
-    for i in range(state.instant.awake_contacts):
-        contact = model.contacts[state.active[i]]
+    for i in range(smooth.held.contacts):
+        contact = model.contacts[active[i]]
         smooth.engaged[model.primitives[contact.a].body] = 1
         smooth.engaged[model.primitives[contact.b].body] = 1
 
 
 @kernel
-def motion(model, state, options, t, work, smooth):
+def motion(model, regime, options, t, smooth, out_counts):
     """dy/dt of `smooth.y` = (q, u, sums) at time t (s) into `smooth.dy`; returns the smallest monitor.
 
-    `smooth.engaged` must be that of the active contacts; `work.system.inverse` is given. Code of the monitors: MONITORS * place
-    in `state.active` + kind; behind those of all contacts one for each coordinate with its bearing. Of `state` only the count
-    of evaluations is written.
+    What `engage` finds must be that of the active contacts; `system.inverse` is given. Code of the monitors: MONITORS * place
+    in `regime.active` + kind; behind those of all contacts one for each coordinate with its bearing.
     """
-    system, modes, instant = work.system, work.modes, state.instant
+    system, modes, contacts, lenience = smooth.system, smooth.modes, smooth.held.contacts, smooth.held.lenience
     n = len(model.coordinates)
     q, u = smooth.y[:n], smooth.y[n : 2 * n]
     closed, out = smooth.closed, smooth.dy
     forces(model, t, q, u, system.h)
-    add_drag(model, state.grip, system.h)
+    add_drag(model, regime.grip, system.h)
     for b in range(len(model.bodies)):
         if smooth.engaged[b]:
             place_body(model, b, q, u, smooth.pose)
@@ -451,25 +451,25 @@ def motion(model, state, options, t, work, smooth):
         out[i], out[n + i] = u[i], own_acceleration(model, system, i)
         smooth.load[i], smooth.terms[i] = system.h[i], abs(system.h[i])
     smallest, friction, driven, first = math.inf, 0.0, 0.0, 0
-    while first < instant.awake_contacts:
-        m = place_contacts(model, state.active, first, state.upto[first], smooth.pose, closed)
-        solve_mode(model, closed, m, state.mode, instant.lenience, system, modes)
+    while first < contacts:
+        m = place_contacts(model, regime.active, first, regime.upto[first], smooth.pose, closed)
+        solve_mode(model, closed, m, regime.mode, lenience, system, modes)
         apply(closed, m, system.force, system.inverse, out[n : 2 * n])
-        add_loads(closed, m, system.force, state.grip, smooth.load, smooth.terms)
+        add_loads(closed, m, system.force, regime.grip, smooth.load, smooth.terms)
         driven += drive_through_contacts(model, closed, m, system.force, u)
         for i in range(m):
             friction -= system.force[2 * i + 1] * closed.kin[i].gT_dot
         monitors = smooth.monitors[MONITORS * first :]
-        smallest = min(smallest, _watch(state.mode, instant.lenience, options, m, system, modes, closed, monitors))
+        smallest = min(smallest, _watch(regime.mode, lenience, options, m, system, modes, closed, monitors))
         first += m
     for i in range(n):
-        monitor = bearing_monitor(model, state.grip[i], instant.lenience, options, i, smooth) if state.awake[i] else 1.0
-        smooth.monitors[MONITORS * instant.awake_contacts + i] = monitor
+        monitor = bearing_monitor(model, regime.grip[i], lenience, options, i, smooth) if regime.awake[i] else 1.0
+        smooth.monitors[MONITORS * contacts + i] = monitor
         smallest = min(smallest, monitor)
-        if state.awake[i] == 0:
+        if regime.awake[i] == 0:
             out[n + i] = 0.0
     out[2 * n] = drive_power(model, t, q, u) + driven
-    out[2 * n + 1] = damping_power(model, q, u) + drag_power(model, state.grip, u)
+    out[2 * n + 1] = damping_power(model, q, u) + drag_power(model, regime.grip, u)
     out[2 * n + 2] = friction
-    state.counts.evaluations += 1
+    out_counts.evaluations += 1
     return smallest

@@ -23,8 +23,8 @@ from watchsim.simulation.free_motion import flow
 from watchsim.simulation.integrator import NONE_FIRED, coupled_step, first_leave, first_turn
 from watchsim.simulation.modes import begin_instant, decide_once, key_of_modes
 from watchsim.simulation.options import OptionsRef, longest_step
-from watchsim.simulation.scratch import MONITORS, RECENT, SUMS, RecordRef, keep_row, scratch_by_reference
-from watchsim.simulation.state import NO_CONTACT, StateRef, Stop
+from watchsim.simulation.scratch import MONITORS, RECENT, SUMS, RecordRef, keep_row, scratch_by_reference, state_by_reference
+from watchsim.simulation.state import NO_CONTACT, Stop
 from watchsim.simulation.step_path import (
     FLIGHT_PHASE,
     add_flight_sums,
@@ -66,22 +66,22 @@ def _room_left(record, contacts):
 def _smooth_step(model, cells, state, options, end_time, scratch, record):
     """One smooth step up to its first event; returns (Stop code, event?)."""
     left = end_time - state.clock.time
-    flying, spacing, code = can_fly(model, state.awake, state.instant.awake_contacts), math.inf, NONE_FIRED
+    flying, spacing, code = can_fly(model, state.regime.awake, state.instant.awake_contacts), math.inf, NONE_FIRED
     proposed = state.clock.step
     if flying:
-        length, spacing = flight_length(model, state, options)
-        begin_flight(model, state, min(length, left), scratch.step)
+        length, spacing = flight_length(model, state.regime, state.q, state.u, options, state.clock.time)
+        begin_flight(model, state.regime, state.q, state.u, state.clock.time, min(length, left), scratch.step)
         # A long flight would ask about cells far behind the first event.
         for p in range(len(model.pairs)):
             length = min(length, time_through_cells(model, p, state.q, state.u, scratch.step.bound, FLIGHT_CELLS))
         scratch.step.span.length = min(length, left)
-        leave = first_turn(model, state)
+        leave = first_turn(model, state.regime, state.q, state.u)
     else:
         longest = min(left, longest_step(options, state.clock.time), next_knot(model, state.clock.time) - state.clock.time)
-        made, smallest = coupled_step(model, state, options, longest, scratch)
+        made, smallest = coupled_step(model, state, options, longest, scratch.smooth)
         if not made:
             return Stop.STEP_TOO_SMALL, False
-        leave, code = first_leave(model, state, options, smallest, scratch)
+        leave, code = first_leave(model, state.regime, options, smallest, scratch.smooth, state.counts)
     step = scratch.step
     length = step.span.length
     known, touch, contact = first_touch(model, cells, state, options, min(length, leave), scratch)
@@ -93,7 +93,7 @@ def _smooth_step(model, cells, state, options, end_time, scratch, record):
     if flying:
         state.counts.flights += 1
         add_flight_sums(model, step, end, state.sums)
-        keep_flight_rows(model, state, end, spacing, scratch.step, record)
+        keep_flight_rows(model, end, spacing, step, record, state.q, state.u, state.a)
     else:
         end, explained = accept_coupled(model, state, options, end, contact, scratch)
         if not explained:
@@ -106,7 +106,7 @@ def _smooth_step(model, cells, state, options, end_time, scratch, record):
     state.instant.touched = contact
     event = contact >= 0 or leave <= length
     if event:
-        _note_end(state.active, state.instant.awake_contacts, contact, code, scratch.ended)
+        _note_end(state.regime.active, state.instant.awake_contacts, contact, code, scratch.ended)
     return Stop.RUNNING, event
 
 
@@ -178,17 +178,17 @@ def _follow_step(model, state, options, end, scratch):
         if coordinate.driven and coordinate.linear:  # known in closed form: no error of steps adds up
             state.q[i], state.u[i] = flow(coordinate, OPEN, step.y0[i], step.y0[n + i], end)
             smooth.y[i], smooth.y[n + i] = state.q[i], state.u[i]
-    motion(model, state, options, step.span.start + end, scratch.work, smooth)
+    motion(model, state.regime, options, step.span.start + end, smooth, state.counts)
     before = kinetic_energy(model, state.u)
     first = 0
     while first < state.instant.awake_contacts:
-        m = place_contacts(model, state.active, first, state.upto[first], pose, closed)
+        m = place_contacts(model, state.regime.active, first, state.regime.upto[first], pose, closed)
         deepest = project_positions(closed, m, True, options.behind, inverse, projection, state.q)
         state.worst.penetration = max(state.worst.penetration, deepest)
         if _turns_rates(model, state.u, options, m, closed):
             place(model, state.q, state.u, pose)
             refresh(model, m, closed, pose)
-        project_velocities(closed, m, state.mode, DEPENDENT_IN_STEPS, inverse, projection, state.u)
+        project_velocities(closed, m, state.regime.mode, DEPENDENT_IN_STEPS, inverse, projection, state.u)
         first += m
     return before
 
@@ -227,8 +227,8 @@ def _note_end(active, awake_contacts, contact, code, out_ended):
 def _reaches(model, state, options, end_time):
     """True if the next step, taken freely, might come as far as `end_time`."""
     longest = min(state.clock.step, longest_step(options, state.clock.time))
-    if can_fly(model, state.awake, state.instant.awake_contacts):
-        longest, _ = flight_length(model, state, options)
+    if can_fly(model, state.regime.awake, state.instant.awake_contacts):
+        longest, _ = flight_length(model, state.regime, state.q, state.u, options, state.clock.time)
     return longest >= end_time - state.clock.time
 
 
@@ -254,7 +254,7 @@ def handle_waiting_event(model, cells, state, options, scratch, record):
         return Stop.UNEXPLAINED
     if state.counts.impacts + state.counts.jams > blows:
         state.instant.decisions = 0  # the same modes may be decided again: the velocities are others
-    elif touched < 0 and not decide_once(key_of_modes(state), state.decided, state.instant):
+    elif touched < 0 and not decide_once(key_of_modes(state.regime, state.instant), state.decided, state.instant):
         return Stop.TOO_MANY_EVENTS
     state.instant.events += 1
     state.counts.instants += 1
@@ -280,9 +280,9 @@ def _undone(code, before, counts):
 @kernel
 def _loop(model, cells, state, options, until, scratch, record):
     """From step to step and event to event; see `advance`."""
-    fill_inverse(model, state.grip, scratch.work.system.inverse)
+    fill_inverse(model, state.regime.grip, scratch.work.system.inverse)
     while True:
-        if not _room_left(record, len(state.active)):
+        if not _room_left(record, len(state.regime.active)):
             return Stop.BUFFER_FULL
         before = _counted(state.counts)
         if state.instant.event_waits == 1:
@@ -317,7 +317,7 @@ def advance(model, cells, state, options, until, scratch, record):
     return _loop(
         ModelRef(*model),
         CellsRef(*cells),
-        StateRef(*state),
+        state_by_reference(state),
         OptionsRef(*options),
         until,
         scratch_by_reference(scratch),

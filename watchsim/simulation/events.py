@@ -64,14 +64,14 @@ def handle_event(model, cells, state, options, scratch, record):
         if label[island] != island:
             continue
         last = upto[first] if first < m and island_of(model, label, listed[first]) == island else first
-        fill_inverse(model, state.grip, scratch.work.system.inverse)
+        fill_inverse(model, state.regime.grip, scratch.work.system.inverse)
         closed = close_gaps(model, state, (first, last), options, scratch, record)
         code, r = resolve(model, state, island, closed, options, scratch, record)
         if code != Stop.RUNNING:
             return code
         apply_modes(state, closed, r, event, record)
         first = last
-    in_force = _closed_of(state.mode, m, listed, state.active)
+    in_force = _closed_of(state.regime.mode, m, listed, state.regime.active)
     finish_event(model, state, in_force, options, scratch, record)
     state.instant.event_waits, state.instant.touched = 0, NO_CONTACT
     return Stop.RUNNING
@@ -89,12 +89,12 @@ def project_landing(model, state, options, scratch):
         return
     left = False
     for j in range(m):
-        left = left or extent_margin(model, state.active[j], event.pose) < -LEFT_PRIMITIVE * options.extent
+        left = left or extent_margin(model, state.regime.active[j], event.pose) < -LEFT_PRIMITIVE * options.extent
     if not left:
         return
-    fill_inverse(model, state.grip, inverse)
+    fill_inverse(model, state.regime.grip, inverse)
     for j in range(m):
-        event.listed[j] = state.active[j]
+        event.listed[j] = state.regime.active[j]
     m = insert(event.listed, m, state.instant.touched)
     place_contacts(model, event.listed, 0, m, event.pose, event.closed)
     project_positions(event.closed, m, True, options.behind, inverse, scratch.projection, state.q)
@@ -111,15 +111,15 @@ def close_gaps(model, state, span, options, scratch, record):
     closed, inverse = event.closed, work.system.inverse
     m = place_contacts(model, event.listed, span[0], span[1], event.pose, closed)
     m = drop_immovable(model, state, m, event, record)
-    m = defer_parallel(model, state.mode, state.instant.touched, m, options, work.system, event)
+    m = defer_parallel(model, state.regime.mode, state.instant.touched, m, options, work.system, event)
     track_peak_speed(state.u, event.peak_speed)
     deepest = project_positions(closed, m, False, options.behind, inverse, projection, state.q)
     if deepest > 0.0:
         state.worst.penetration = max(state.worst.penetration, deepest)
-        replace(model, state, m, event)
+        replace(model, state.q, state.u, m, event)
         # Rates of the contacts in force have changed with the places, by the gaps times how fast bodies turn.
-        project_velocities(closed, m, state.mode, DEPENDENT_IN_STEPS, inverse, projection, state.u)
-        replace(model, state, m, event)
+        project_velocities(closed, m, state.regime.mode, DEPENDENT_IN_STEPS, inverse, projection, state.u)
+        replace(model, state.q, state.u, m, event)
     return m
 
 
@@ -139,7 +139,7 @@ def resolve(model, state, island, m, options, scratch, record):
                 return Stop.LCP_FAILED, 0
             jammed, hit = False, not jammed
         else:
-            decision = decide(model, state, island, m, options, work, event, state.grip)
+            decision = decide(model, state, island, m, options, work.system, work.problem, event, state.regime.grip)
             verdict = judge(model, state, island, m, decision, (exactly, hit), options, scratch, record)
             if verdict == Verdict.HOLDS:
                 return Stop.RUNNING, decision[0]
@@ -159,8 +159,8 @@ def apply_modes(state, m, r, event, record):
         for j in range(r):
             if rest.ids[j] == k:
                 new = event.decided[k]
-        keep_change(record, state.clock, state.counts, k, state.mode[k], new)
-        state.mode[k] = new
+        keep_change(record, state.clock, state.counts, k, state.regime.mode[k], new)
+        state.regime.mode[k] = new
 
 
 @kernel
@@ -176,31 +176,31 @@ def _closed_of(mode, m, ids, out_ids):
 
 @kernel
 def finish_event(model, state, f, options, scratch, record):
-    """Exact positions and velocities, accelerations and sleep with the f contacts in force, `state.active[:f]`."""
+    """Exact positions and velocities, accelerations and sleep with the f contacts in force, `state.regime.active[:f]`."""
     work, event, rest = scratch.work, scratch.event, scratch.event.rest
     system = work.system
-    label_islands(model, state.active, f, event.label)
-    sort_by_island(model, event.label, f, state.active, state.upto)
+    label_islands(model, state.regime.active, f, event.label)
+    sort_by_island(model, event.label, f, state.regime.active, state.regime.upto)
     place(model, state.q, state.u, event.pose)
     forces(model, state.clock.time, state.q, state.u, system.h)
-    add_drag(model, state.grip, system.h)
-    fill_inverse(model, state.grip, system.inverse)
+    add_drag(model, state.regime.grip, system.h)
+    fill_inverse(model, state.regime.grip, system.inverse)
     accelerate(model, rest, 0, system, state.a)
     begin_terms(system.h, event.terms)
     first = 0
     while first < f:
-        m = place_contacts(model, state.active, first, state.upto[first], event.pose, rest)
+        m = place_contacts(model, state.regime.active, first, state.regime.upto[first], event.pose, rest)
         _correct(state, m, options, system.inverse, scratch.projection, rest, event.trial)
         first += m
-        m, unique = release_pulling(model, state, m, options, work, event, record)
+        m, unique = release_pulling(model, state, m, options, system, work.modes, event, record)
         if not unique:
             state.counts.redundant_sets += 1
         apply(rest, m, system.force, system.inverse, state.a)
-        hold_at_dead_centre(model, state.mode, state.u, m, system, rest, state.a)
+        hold_at_dead_centre(model, state.regime.mode, state.u, m, system, rest, state.a)
         add_terms(rest, m, system.force, event.terms)
-    f = _closed_of(state.mode, f, state.active, state.active)
-    find_sleepers(model, state, options, event, f)
-    _list_awake_first(model, state, f, event)
+    f = _closed_of(state.regime.mode, f, state.regime.active, state.regime.active)
+    find_sleepers(model, state.regime, options, state.clock.time, event, f, state.u, state.a)
+    _list_awake_first(model, state.regime, f, event, state.instant)
 
 
 @kernel
@@ -210,21 +210,21 @@ def _correct(state, m, options, inverse, projection, rest, out_trial):
     state.worst.penetration = max(state.worst.penetration, deepest)
     for i in range(m):
         k = rest.ids[i]
-        out_trial[k] = STICK if state.mode[k] * rest.kin[i].gT_dot < 0.0 else state.mode[k]
+        out_trial[k] = STICK if state.regime.mode[k] * rest.kin[i].gT_dot < 0.0 else state.regime.mode[k]
     project_velocities(rest, m, out_trial, DEPENDENT_AT_EVENTS, inverse, projection, state.u)
 
 
 @kernel
-def _list_awake_first(model, state, f, event):
+def _list_awake_first(model, regime, f, event, out_instant):
     """Put the contacts of awake bodies first among the f in force."""
-    copy(state.active, event.in_force)
+    copy(regime.active, event.in_force)
     count = 0
     for awake in (True, False):
         if not awake:
-            state.instant.awake_contacts, state.instant.sleeping_contacts = count, f - count
+            out_instant.awake_contacts, out_instant.sleeping_contacts = count, f - count
         for j in range(f):
             k = event.in_force[j]
-            if (state.awake[island_of(model, event.label, k)] != 0) == awake:
-                state.active[count] = k
+            if (regime.awake[island_of(model, event.label, k)] != 0) == awake:
+                regime.active[count] = k
                 count += 1
-    sort_by_island(model, event.label, state.instant.awake_contacts, state.active, state.upto)
+    sort_by_island(model, event.label, out_instant.awake_contacts, regime.active, regime.upto)

@@ -563,7 +563,7 @@ def _list(model, cells, state, options, p, span, count, step, path):
     bounds = (body_bounds(model, pair.a, until - tau, step, path), body_bounds(model, pair.b, until - tau, step, path))
     for place in range(start, start + number):
         k = candidate(model, cells, how, place)
-        if state.mode[k] != OPEN or is_beside_active(model, state.active, state.instant.awake_contacts, k):
+        if state.regime.mode[k] != OPEN or is_beside_active(model, state.regime.active, state.instant.awake_contacts, k):
             continue
         state.counts.gap_evaluations += 1
         stays = tau + _stays_open_for(model, options, k, until - tau, pair.a, bounds, path)
@@ -584,7 +584,7 @@ def first_touch(model, cells, state, options, end, scratch):
     best, who, step, path = end, NO_CONTACT, scratch.step, scratch.path
     count, known, in_force = 0, True, state.instant.awake_contacts + state.instant.sleeping_contacts
     for p in range(len(model.pairs)):
-        if is_at_rest(model, state.awake, model.pairs[p].a) and is_at_rest(model, state.awake, model.pairs[p].b):
+        if is_at_rest(model, state.regime.awake, model.pairs[p].a) and is_at_rest(model, state.regime.awake, model.pairs[p].b):
             continue
         known, count = _list(model, cells, state, options, p, (0.0, end), count, step, path)
         if not known:
@@ -601,7 +601,7 @@ def first_touch(model, cells, state, options, end, scratch):
                 return False, 0.0, NO_CONTACT
             continue
         until = min(until, best)
-        time, closes = crossing(model, state.active, in_force, options, k, (start, until), step, path, state.counts)
+        time, closes = crossing(model, state.regime.active, in_force, options, k, (start, until), step, path, state.counts)
         if closes:
             best, who = time, k
         elif time < until:

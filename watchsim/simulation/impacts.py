@@ -60,7 +60,7 @@ def collide(model, state, island, m, options, jam_speed, scratch, record):
             return False
         for row in range(2 * m):
             room.impulse[row] = work.phases.impulse[row]
-        replace(model, state, m, event)
+        replace(model, state.q, state.u, m, event)
         track_peak_speed(state.u, event.peak_speed)
         found, end = _end_rebounds(model, state, island, m, options, scratch)
         if not found:
@@ -168,7 +168,7 @@ def _rounding(i, options, G, impulse, event):
 def _accelerations(model, state, island, m, options, scratch):
     """Accelerations of the island after the impact into `state.a`; False if there are none."""
     work, event = scratch.work, scratch.event
-    r, solved = decide(model, state, island, m, options, work, event, scratch.impact.grip)
+    r, solved = decide(model, state, island, m, options, work.system, work.problem, event, scratch.impact.grip)
     if solved:
         accelerate(model, event.rest, r, work.system, state.a)
     return solved
@@ -288,12 +288,11 @@ def chatter_time(m, a, options, event):
 
 
 @kernel
-def pressed_time(model, a, island, m, options, work, event, room):
+def pressed_time(model, a, island, m, options, system, problem, event, room):
     """The same of contacts that come back only once others have: a block on one that falls with it until that one lands.
 
     The forces that all m contacts had if none of them left say what presses each of them back then.
     """
-    system, problem = work.system, work.problem
     bearings = standing_bearings(event.label, island, room.grip, problem.bearing)
     if not decide_modes(model, event.closed, m, bearings, options.speed_zero, system, problem, room.grip, room.mode):
         return math.inf
@@ -354,7 +353,7 @@ def _end_chatter(model, state, island, m, options, scratch, record):
         return
     time, apart = chatter_time(m, state.a, options, event)
     if apart and 0.0 < time < math.inf:
-        time = max(time, pressed_time(model, state.a, island, m, options, work, event, room))
+        time = max(time, pressed_time(model, state.a, island, m, options, work.system, work.problem, event, room))
     if not 0.0 < time < math.inf:
         return
     before = kinetic_energy(model, state.u)
@@ -374,7 +373,7 @@ def _end_chatter(model, state, island, m, options, scratch, record):
             back = state.clock.time + min(time, return_time(event.closed, i, state.a))
             keep_event(record, state.clock, state.counts, EventKind.ACCUMULATION, event.closed.ids[i], -1, back)
             state.counts.accumulations += 1
-    replace(model, state, m, event)
+    replace(model, state.q, state.u, m, event)
     driven = drive_through_contacts(model, event.rest, r, room.ending, state.u)
     state.sums.drive += driven
     state.sums.impacts += before + driven - kinetic_energy(model, state.u)

@@ -26,45 +26,45 @@ NONE_FIRED = -1  # in the place of a monitor's code
 
 
 @kernel
-def _slack(model, state, options, code):
+def _slack(model, regime, options, code, smooth):
     """How far beyond zero velocity the monitors of slips and of moving bearings fire; the reversal is where it vanishes."""
-    j = code - MONITORS * state.instant.awake_contacts
+    j = code - MONITORS * smooth.held.contacts
     if j >= 0:
-        if state.grip[j] == STICK:
+        if regime.grip[j] == STICK:
             return 0.0
-        return 0.5 * state.instant.lenience * options.speed_zero / options.size * model.coordinates[j].scale
-    slides = code % MONITORS == TANGENTIAL and state.mode[state.active[code // MONITORS]] != STICK
-    return state.instant.lenience * SLIP_SLACK * options.speed_zero if slides else 0.0
+        return 0.5 * smooth.held.lenience * options.speed_zero / options.size * model.coordinates[j].scale
+    slides = code % MONITORS == TANGENTIAL and regime.mode[regime.active[code // MONITORS]] != STICK
+    return smooth.held.lenience * SLIP_SLACK * options.speed_zero if slides else 0.0
 
 
 @kernel
-def _evaluate(model, state, options, tau, scratch):
+def _evaluate(model, regime, options, tau, smooth, out_counts):
     """Evaluate the motion, and with it all monitors, at time tau of the step; returns the smallest."""
-    step, smooth = scratch.step, scratch.smooth
+    step = smooth.step
     for i in range(len(smooth.y)):
         smooth.y[i] = dense_value(step, i, tau)
-    return motion(model, state, options, step.span.start + tau, scratch.work, smooth)
+    return motion(model, regime, options, step.span.start + tau, smooth, out_counts)
 
 
 @kernel
-def _root(model, state, options, which, low, high, scratch):
+def _root(model, regime, options, which, low, high, smooth, out_counts):
     """Time at which one monitor, positive at low, passes zero; `high` where it is still positive then.
 
     The monitors at low are in `smooth.before`, those at high in `smooth.monitors`.
     """
-    monitors = scratch.smooth.monitors
-    f_low, f_high = scratch.smooth.before[which], monitors[which]
+    monitors = smooth.monitors
+    f_low, f_high = smooth.before[which], monitors[which]
     if f_high > 0.0:
         return high  # another one has fired before
-    slack = _slack(model, state, options, which)
+    slack = _slack(model, regime, options, which, smooth)
     if f_low <= slack:
         slack = 0.0
     f_low -= slack
     f_high -= slack
     bracket = opened(low, f_low, high, f_high)
     tau = next_time(bracket)
-    while is_open(bracket, tau, ROOT_RESOLUTION * (scratch.step.span.start + bracket.high)):
-        _evaluate(model, state, options, tau, scratch)
+    while is_open(bracket, tau, ROOT_RESOLUTION * (smooth.step.span.start + bracket.high)):
+        _evaluate(model, regime, options, tau, smooth, out_counts)
         f = monitors[which] - slack
         bracket = narrowed(bracket, tau, f, f <= 0.0)
         if f == 0.0:
@@ -74,7 +74,7 @@ def _root(model, state, options, which, low, high, scratch):
 
 
 @kernel
-def first_leave(model, state, options, smallest, scratch):
+def first_leave(model, regime, options, smallest, smooth, out_counts):
     """(time, code of the monitor): when in the coupled step one is first no longer positive; infinity if all stay positive.
 
     `smallest`: the smallest monitor at the stages of the step. Beyond the end of a primitive forces mean nothing: where two
@@ -82,72 +82,72 @@ def first_leave(model, state, options, smallest, scratch):
     """
     if smallest > 0.0:
         return math.inf, NONE_FIRED
-    length, smooth = scratch.step.span.length, scratch.smooth
-    codes = MONITORS * state.instant.awake_contacts + len(model.coordinates)
+    length = smooth.step.span.length
+    codes = MONITORS * smooth.held.contacts + len(model.coordinates)
     for code in range(codes):
         if smooth.before[code] <= 0.0:
             return 0.0, code
     before = 0.0
     for sample in range(1, SAMPLES + 1):
         tau = length * sample / SAMPLES
-        if _evaluate(model, state, options, tau, scratch) <= 0.0:
-            return _first_before(model, state, options, before, tau, scratch)
+        if _evaluate(model, regime, options, tau, smooth, out_counts) <= 0.0:
+            return _first_before(model, regime, options, before, tau, smooth, out_counts)
         before = tau
         copy(smooth.monitors, smooth.before)
     return math.inf, NONE_FIRED
 
 
 @kernel
-def _first_before(model, state, options, before, tau, scratch):
+def _first_before(model, regime, options, before, tau, smooth, out_counts):
     """(time, code of the monitor): the first to end between `before`, where all are positive, and tau, where some are not."""
-    best, code, left = _earliest(model, state, options, before, tau, scratch)
+    best, code, left = _earliest(model, regime, options, before, tau, smooth, out_counts)
     for _ in range(SAMPLES):
-        if not (left and before < best and state.instant.awake_contacts > 1):
+        if not (left and before < best and smooth.held.contacts > 1):
             break
-        tau = _while_within(state, options, before, best, scratch)
-        if _evaluate(model, state, options, tau, scratch) > 0.0:
+        tau = _while_within(options, before, best, smooth)
+        if _evaluate(model, regime, options, tau, smooth, out_counts) > 0.0:
             break
-        best, code, left = _earliest(model, state, options, before, tau, scratch)
+        best, code, left = _earliest(model, regime, options, before, tau, smooth, out_counts)
     return best, code
 
 
 @kernel
-def _while_within(state, options, before, best, scratch):
+def _while_within(options, before, best, smooth):
     """A time just before `best`, at which the contacts that have left by then were within their primitives."""
     nearest = math.inf
-    for j in range(state.instant.awake_contacts):
-        nearest = min(nearest, scratch.smooth.before[MONITORS * j + EXTENT])
+    for j in range(smooth.held.contacts):
+        nearest = min(nearest, smooth.before[MONITORS * j + EXTENT])
     return best - min(WITHIN_ENDS * options.extent / nearest, 0.5) * (best - before)
 
 
 @kernel
-def _earliest(model, state, options, before, tau, scratch):
+def _earliest(model, regime, options, before, tau, smooth, out_counts):
     """The earliest root among the monitors that fire at tau and not `before`; its code; had a contact left by tau?"""
-    smooth, fired, left = scratch.smooth, 0, False
-    for code in range(MONITORS * state.instant.awake_contacts + len(model.coordinates)):
+    fired, left = 0, False
+    for code in range(MONITORS * smooth.held.contacts + len(model.coordinates)):
         if smooth.monitors[code] <= 0.0:
             smooth.fired[fired] = code
             fired += 1
-            left = left or (code < MONITORS * state.instant.awake_contacts and code % MONITORS == EXTENT)
+            left = left or (code < MONITORS * smooth.held.contacts and code % MONITORS == EXTENT)
     best, first = tau, smooth.fired[0]
     for j in range(fired):
         if j > 0:
-            _evaluate(model, state, options, best, scratch)
-        root = _root(model, state, options, smooth.fired[j], before, best, scratch)
+            _evaluate(model, regime, options, best, smooth, out_counts)
+        root = _root(model, regime, options, smooth.fired[j], before, best, smooth, out_counts)
         if root < best:
             best, first = root, smooth.fired[j]
     return best, first, left
 
 
 @kernel
-def first_turn(model, state):
+def first_turn(model, regime, q, u):
     """First time in an exact flight at which a bearing with dry friction comes to a stop; infinity if none does."""
     first = math.inf
     for i in range(len(model.coordinates)):
-        if state.awake[i] and model.coordinates[i].coulomb > 0.0:
-            if state.grip[i] * state.u[i] < 0.0:
+        if regime.awake[i] and model.coordinates[i].coulomb > 0.0:
+            if regime.grip[i] * u[i] < 0.0:
                 return 0.0  # it turned at the very end of the last flight
-            first = min(first, turning_time(model.coordinates[i], state.grip[i], state.q[i], state.u[i]))
+            first = min(first, turning_time(model.coordinates[i], regime.grip[i], q[i], u[i]))
     return first
 
 
@@ -161,9 +161,9 @@ PROBE, DEFECT = 0.75, 30.0
 
 
 @kernel
-def _stage(model, state, options, s, h, scratch):
+def _stage(model, regime, options, s, h, smooth, out_counts):
     """Derivative of stage s into `stages[s]`; returns the smallest monitor."""
-    step, smooth = scratch.step, scratch.smooth
+    step = smooth.step
     y0, y, stages = step.y0, smooth.y, step.stages
     width = len(y0)
     for i in range(width):
@@ -175,7 +175,7 @@ def _stage(model, state, options, s, h, scratch):
                 y[i] += share * stages[j, i]
     for i in range(width):
         y[i] = y0[i] + h * y[i]
-    smallest = motion(model, state, options, step.span.start + C[s] * h, scratch.work, smooth)
+    smallest = motion(model, regime, options, step.span.start + C[s] * h, smooth, out_counts)
     copy(smooth.dy, stages[s])
     return smallest
 
@@ -202,11 +202,11 @@ def _error(model, options, h, step):
 
 
 @kernel
-def _extend(model, state, options, h, scratch):
+def _extend(model, regime, options, h, smooth, out_counts):
     """Coefficients of the continuous extension into `dense`; returns the smallest monitor at its stages."""
-    step, smallest = scratch.step, math.inf
+    step, smallest = smooth.step, math.inf
     for s in range(STAGES + 1, STAGES + 4):
-        smallest = min(smallest, _stage(model, state, options, s, h, scratch))
+        smallest = min(smallest, _stage(model, regime, options, s, h, smooth, out_counts))
     for i in range(len(step.y0)):
         change = step.y1[i] - step.y0[i]
         first, last = h * step.stages[0, i], h * step.stages[STAGES, i]
@@ -236,35 +236,35 @@ def _defect(model, options, h, step):
 
 
 @kernel
-def coupled_step(model, state, options, longest, scratch):
-    """One accepted step of at most `longest` seconds from the state, left in `scratch.step`.
+def coupled_step(model, state, options, longest, smooth):
+    """One accepted step of at most `longest` seconds from the state, left in `smooth.step`.
 
     Returns (made: False if it gets too small, the smallest monitor met at its stages). Proposes the next length in
     `state.clock.step`.
     """
-    step = scratch.step
+    step, regime = smooth.step, state.regime
     n = len(model.coordinates)
     step.span.kind, step.span.start = COUPLED, state.clock.time
     for i in range(n):
-        step.q[i], step.u[i], step.awake[i], step.grip[i] = state.q[i], state.u[i], state.awake[i], state.grip[i]
+        step.q[i], step.u[i], step.awake[i], step.grip[i] = state.q[i], state.u[i], regime.awake[i], regime.grip[i]
         step.y0[i], step.y0[n + i] = state.q[i], state.u[i]
     for i in range(SUMS):
         step.y0[2 * n + i] = 0.0
-    engage(model, state, scratch.smooth)
+    engage(model, regime.active, state.instant, smooth)
     h = min(state.clock.step, longest)
     shrunk = False
-    at_start = _stage(model, state, options, 0, h, scratch)  # whatever the length of the step
-    copy(scratch.smooth.monitors, scratch.smooth.before)
+    at_start = _stage(model, regime, options, 0, h, smooth, state.counts)  # whatever the length of the step
+    copy(smooth.monitors, smooth.before)
     while True:
         smallest = at_start
         for s in range(1, STAGES + 1):
-            smallest = min(smallest, _stage(model, state, options, s, h, scratch))
+            smallest = min(smallest, _stage(model, regime, options, s, h, smooth, state.counts))
         for i in range(len(step.y0)):
-            step.y1[i] = scratch.smooth.y[i]
+            step.y1[i] = smooth.y[i]
         error = _error(model, options, h, step)
         if error <= 1.0:
             step.span.length = h
-            smallest = min(smallest, _extend(model, state, options, h, scratch))
+            smallest = min(smallest, _extend(model, regime, options, h, smooth, state.counts))
             defect = _defect(model, options, h, step)
             error = defect if defect > 1.0 else error
         factor = min(GROW, max(SHRINK, SAFETY * error**-0.125)) if error > 0.0 else GROW

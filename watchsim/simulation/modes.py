@@ -58,13 +58,12 @@ def standing_bearings(label, island, grip, out_bearing):
 
 
 @kernel
-def decide(model, state, island, m, options, work, event, out_grip):
+def decide(model, state, island, m, options, system, problem, event, out_grip):
     """Modes of those of the island's m closed contacts that are in I_N, into `event.decided`, and the grips of its bearings.
 
-    Their forces are left in `work.system`. Returns (number of contacts in I_N, now in `event.rest`; solved?). Of `state` only
+    Their forces are left in `system`. Returns (number of contacts in I_N, now in `event.rest`; solved?). Of `state` only
     counts are written.
     """
-    system, problem = work.system, work.problem
     r = resting(model, m, event.closed, event.pose, event.zero, event.rest)
     forces(model, state.clock.time, state.q, state.u, system.h)
     set_grips(model, state.u, event.label, island, options, out_grip)
@@ -104,30 +103,30 @@ def judge(model, state, island, m, decision, terms, options, scratch, record):
     (r, solved), (exactly, hit) = decision, terms
     event, system, rest = scratch.event, scratch.work.system, scratch.event.rest
     if stop_at_dead_centre(model, state, r, solved, system, event, record):
-        replace(model, state, m, event)
+        replace(model, state.q, state.u, m, event)
         return Verdict.STOPPED
     if stands_at_dead_centre(model, state.u, island, r, solved, system, event):
         return Verdict.HOLDS
     if solved:
-        if not exactly and contradicts(model, state, r, options, system, event, scratch.projection):
+        if not exactly and contradicts(model, state.instant.touched, r, options, system, event, scratch.projection, state.a):
             return Verdict.EXACTLY
-        stop_held(event.label, island, state.grip, state.u)
+        stop_held(event.label, island, state.regime.grip, state.u)
         return Verdict.HOLDS
-    if hit and stop_rounding(model, m, r, options, scratch, state.u):
-        replace(model, state, m, event)
+    if hit and stop_rounding(model, m, r, options, system, event, scratch.impact.impulse, scratch.projection, state.u):
+        replace(model, state.q, state.u, m, event)
         return Verdict.ROUNDING
     if not _slides(r, options.speed_zero, rest):
         state.counts.lcp_failures += 1
         return Verdict.FAILED
     hold_gaps(model, r, options, system, event, scratch.projection, state.u)
-    replace(model, state, m, event)
+    replace(model, state.q, state.u, m, event)
     return Verdict.JAMMED
 
 
 @kernel
-def replace(model, state, m, event):
+def replace(model, q, u, m, event):
     """Poses and the kinematics of the m closed contacts at the state, which has changed."""
-    place(model, state.q, state.u, event.pose)
+    place(model, q, u, event.pose)
     refresh(model, m, event.closed, event.pose)
 
 
@@ -171,20 +170,20 @@ def set_rate_zeros(closed, m, exactly, options, peak_speed, out_zero):
 
 
 @kernel
-def contradicts(model, state, r, options, system, event, projection):
+def contradicts(model, touched, r, options, system, event, projection, out_a):
     """True if the modes decided for the r contacts in `event.rest` show that their gap rates only seemed to be zero.
 
-    Those in force cannot all have none, or the one that has just closed goes on closing. Writes to `state.a`.
+    Those in force cannot all have none, or the one that has just `touched` goes on closing.
     """
     rest = event.rest
     for i in range(r):
-        if rest.ids[i] == state.instant.touched and event.decided[rest.ids[i]] == OPEN:
+        if rest.ids[i] == touched and event.decided[rest.ids[i]] == OPEN:
             rate = rest.kin[i].gN_dot
             if rate < -rate_rounding(rest, i, options, event.peak_speed):
                 # It would sink in by more than `gap_zero` before it is parted, and close again at once, and again.
-                accelerate(model, rest, r, system, state.a)
+                accelerate(model, rest, r, system, out_a)
                 room = max(rest.kin[i].g, 0.0) + options.gap_zero
-                if rate * rate > 2.0 * room * gap_acceleration(rest, i, state.a):
+                if rate * rate > 2.0 * room * gap_acceleration(rest, i, out_a):
                     return True
                 break
     find_correction(rest, r, event.decided, DEPENDENT_AT_EVENTS, system.inverse, projection)
@@ -271,13 +270,12 @@ def _locks(model, rest, i, system):
 
 
 @kernel
-def stop_rounding(model, m, r, options, scratch, out_u):
+def stop_rounding(model, m, r, options, system, event, impulse, projection, out_u):
     """Stop velocities and slips at the r contacts in `event.rest` that are rounding of the impact just solved; True if any.
 
     A body that should stand has no w̄. The tangential impulse is sought within its cone, mu Lambda_N to either side: slips are
     rounded by what that much would do.
     """
-    system, event, impulse = scratch.work.system, scratch.event, scratch.impact.impulse
     closed, rest, found = event.closed, event.rest, False
     for i in range(r):
         for slot in range(rest.slots[i]):
@@ -293,7 +291,7 @@ def stop_rounding(model, m, r, options, scratch, out_u):
         event.trial[k] = STICK if stops else OPEN
         found = found or stops
     if found:
-        project_velocities(rest, r, event.trial, DEPENDENT_AT_EVENTS, system.inverse, scratch.projection, out_u)
+        project_velocities(rest, r, event.trial, DEPENDENT_AT_EVENTS, system.inverse, projection, out_u)
     return found
 
 
@@ -335,16 +333,16 @@ def _weakest(model, mode, lenience, m, options, system, rest):
 
 
 @kernel
-def release_pulling(model, state, m, options, work, event, record):
+def release_pulling(model, state, m, options, system, modes, event, record):
     """Forces of the m contacts in `event.rest`, without those that would pull; those that cannot stick slide.
 
-    The forces are left in `work.system`, the modes in `state.mode`. Returns (number of contacts in force, are their forces
+    The forces are left in `system`, the modes in `state.regime.mode`. Returns (number of contacts in force, are their forces
     unique?).
     """
-    rest, mode, lenience = event.rest, state.mode, state.instant.lenience
-    unique = solve_mode(model, rest, m, mode, lenience, work.system, work.modes)
+    rest, mode, lenience = event.rest, state.regime.mode, state.instant.lenience
+    unique = solve_mode(model, rest, m, mode, lenience, system, modes)
     for _ in range(2 * m):
-        found, i, pulls = _weakest(model, mode, lenience, m, options, work.system, rest)
+        found, i, pulls = _weakest(model, mode, lenience, m, options, system, rest)
         if not found:
             break
         k = rest.ids[i]
@@ -356,9 +354,9 @@ def release_pulling(model, state, m, options, work, event, record):
                 rest.ids[j] = rest.ids[j + 1]
             refresh(model, m, rest, event.pose)
         else:
-            mode[k] = FORWARD if work.system.force[2 * i + 1] < 0.0 else BACKWARD
+            mode[k] = FORWARD if system.force[2 * i + 1] < 0.0 else BACKWARD
         keep_change(record, state.clock, state.counts, k, old, mode[k])
-        unique = solve_mode(model, rest, m, mode, lenience, work.system, work.modes)
+        unique = solve_mode(model, rest, m, mode, lenience, system, modes)
     return m, unique
 
 
@@ -377,14 +375,14 @@ def begin_instant(out_instant):
 
 
 @kernel
-def key_of_modes(state):
+def key_of_modes(regime, instant):
     """A number for the modes of all contacts in force and the grips of all bearings."""
     key = 1
-    for j in range(state.instant.awake_contacts + state.instant.sleeping_contacts):
-        k = state.active[j]
-        key = (key * BASE + 4 * int(k) + int(state.mode[k]) + 1) % MODULUS
-    for i in range(len(state.grip)):
-        key = (key * BASE + int(state.grip[i]) + 1) % MODULUS
+    for j in range(instant.awake_contacts + instant.sleeping_contacts):
+        k = regime.active[j]
+        key = (key * BASE + 4 * int(k) + int(regime.mode[k]) + 1) % MODULUS
+    for i in range(len(regime.grip)):
+        key = (key * BASE + int(regime.grip[i]) + 1) % MODULUS
     return key
 
 

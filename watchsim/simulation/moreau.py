@@ -51,8 +51,17 @@ from watchsim.simulation.moreau_percussions import (
     stop_approaches,
 )
 from watchsim.simulation.options import OptionsRef
-from watchsim.simulation.scratch import Asked, AskedRef, RecordRef, asked_of, keep_event, keep_row, request_cell
-from watchsim.simulation.state import EventKind, StateRef, Stop, room_for
+from watchsim.simulation.scratch import (
+    Asked,
+    AskedRef,
+    RecordRef,
+    asked_of,
+    keep_event,
+    keep_row,
+    request_cell,
+    state_by_reference,
+)
+from watchsim.simulation.state import EventKind, Stop, room_for
 from watchsim.simulation.step_path import sign
 from watchsim.tolerances import STEP_ROUNDING, TAKEN_BACK, YIELD
 
@@ -155,7 +164,7 @@ def closed_at_middle(model, cells, state, options, h, work):
         for place_in_list in range(start, start + count):
             k = candidate(model, cells, how, place_in_list)
             gap = normal_gap(model, k, work.pose).gap
-            if gap > options.gap_close or (state.mode[k] == OPEN and gap < -_believable(model, options, k, h, work)):
+            if gap > options.gap_close or (state.regime.mode[k] == OPEN and gap < -_believable(model, options, k, h, work)):
                 continue
             if extent_margin(model, k, work.pose) >= -options.extent:
                 if m == len(work.closed.ids):
@@ -315,14 +324,14 @@ def _book_line_springs(model, state, h, work, u):
 def _take_back(state, options, m, work):
     """A share of the penetrations at the middle, by the smallest change of positions; remember who is closed."""
     laws = work.laws
-    state.mode[:] = 0
+    state.regime.mode[:] = 0
     work.memory[:] = 0.0
     work.kept.depth = 0.0
     slop = 0.5 * options.gap_close
     any_deep = False
     for i in range(m):
         k = work.closed.ids[i]
-        state.mode[k] = 1
+        state.regime.mode[k] = 1
         work.memory[k, 0], work.memory[k, 1] = laws.P[2 * i], laws.P[2 * i + 1]
         depth = -work.closed.kin[i].g
         work.kept.depth = max(work.kept.depth, depth)
@@ -422,7 +431,7 @@ def advance_fixed(model, cells, state, options, until, pace, work, record):
     return _loop(
         ModelRef(*model),
         CellsRef(*cells),
-        StateRef(*state),
+        state_by_reference(state),
         OptionsRef(*options),
         until,
         pace,

@@ -122,7 +122,7 @@ def _contact(k: int, kinematics: Any, state: State, pairs: Sequence[Pair]) -> di
     return {
         "number": k,
         "between": str(pairs[k]),
-        "mode": int(state.mode[k]),
+        "mode": int(state.regime.mode[k]),
         "gap_m": float(kinematics.g),
         "gap_rate_m_per_s": float(kinematics.gN_dot),
         "slip_m_per_s": float(kinematics.gT_dot),
@@ -148,7 +148,7 @@ def unaccounted(energy: Mapping[str, Any]) -> str:
 
 def unexplained(state: State, pairs: Sequence[Pair]) -> str:
     """The contacts in force where velocities changed by more than impulses explain."""
-    ids = state.active[: state.instant.awake_contacts].tolist()
+    ids = state.regime.active[: state.instant.awake_contacts].tolist()
     touching = "in contact: " + "; ".join(str(pairs[k]) for k in ids[:MANY]) if ids else ""
     return ". ".join(filter(None, (touching, ADVICE_STOP_DETAILS)))
 

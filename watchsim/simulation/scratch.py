@@ -12,9 +12,11 @@ from numpy.typing import NDArray
 
 from watchsim.contact.gaps import OPEN, STICK, Closed, ClosedRef, closed_contacts, poses
 from watchsim.dynamics.contact_work import ContactWork, contact_work, contact_work_by_reference
+from watchsim.dynamics.delassus import ContactSystem
+from watchsim.dynamics.redundant import ModeSystem
 from watchsim.jit import by_reference, inlined, kernel
 from watchsim.model import Model, Records, blank, dtype_of, records
-from watchsim.simulation.state import EVENT_DTYPE, EventKind, room_for
+from watchsim.simulation.state import EVENT_DTYPE, EventKind, RegimeRef, StateRef, room_for
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -144,9 +146,20 @@ class Step(NamedTuple):
 StepRef = by_reference(Step, __name__)
 
 
-class Smooth(NamedTuple):
-    """The coupled motion at one time (coupled_motion.py)."""
+class Held:
+    """What holds for the whole of a coupled step, see `engage`."""
 
+    contacts: int  # in force, of awake bodies
+    lenience: float  # that of the instant at which they were decided
+
+
+class Smooth(NamedTuple):
+    """A coupled step, and the motion at one time of it (coupled_motion.py, integrator.py)."""
+
+    step: Step
+    system: ContactSystem  # that of `ContactWork`, and its equality system
+    modes: ModeSystem
+    held: Held
     y: Array  # q, u, sums
     dy: Array  # their time derivatives
     pose: Any  # of the bodies that contacts in force join
@@ -289,14 +302,22 @@ ScratchRef = by_reference(Scratch, __name__)
 
 
 @inlined
+def state_by_reference(state):
+    """A state as nested structs."""
+    return StateRef(state.clock, state.q, state.u, state.a, RegimeRef(*state.regime), *state[5:])
+
+
+@inlined
 def scratch_by_reference(scratch):
     """The scratch arrays as nested structs; what holds structs itself names them first."""
     smooth, path, event = scratch.smooth, scratch.path, scratch.event
+    step, work = StepRef(*scratch.step), contact_work_by_reference(scratch.work)
+    closed = ClosedRef(*smooth.closed)
     return ScratchRef(
-        StepRef(*scratch.step),
-        contact_work_by_reference(scratch.work),
+        step,
+        work,
         ProjectionRef(*scratch.projection),
-        SmoothRef(smooth.y, smooth.dy, smooth.pose, ClosedRef(*smooth.closed), *smooth[4:]),
+        SmoothRef(step, work.system, work.modes, smooth.held, smooth.y, smooth.dy, smooth.pose, closed, *smooth[8:]),
         PathRef(path.q, path.u, path.pose, ClosedRef(*path.probe), *path[4:]),
         EventRoomRef(event.pose, ClosedRef(*event.closed), ClosedRef(*event.rest), *event[3:]),
         ImpactRoomRef(*scratch.impact),
@@ -324,9 +345,14 @@ def _projection_room(n: int, room: int) -> Projection:
     return Projection(G=np.zeros((rows, rows)), A=np.zeros((rows, rows)), **parts)
 
 
-def _smooth_room(n: int, bodies: int, room: int) -> Smooth:
+def _smooth_room(step: Step, work: ContactWork, bodies: int, room: int) -> Smooth:
+    n = len(step.q)
     width, monitors = 2 * n + SUMS, MONITORS * (room + n)
     return Smooth(
+        step=step,
+        system=work.system,
+        modes=work.modes,
+        held=blank(Held),
         y=np.zeros(width),
         dy=np.zeros(width),
         pose=poses(bodies),
@@ -372,11 +398,12 @@ def _path_room(n: int, bodies: int, entries: int) -> Path:
 def new_scratch(model: Model) -> Scratch:
     """Room to work for one model."""
     n, bodies, contacts, room = len(model.coordinates), len(model.bodies), len(model.contacts), room_for(model)
+    step, work = _step_room(n), contact_work(room, n)
     return Scratch(
-        step=_step_room(n),
-        work=contact_work(room, n),
+        step=step,
+        work=work,
         projection=_projection_room(n, room),
-        smooth=_smooth_room(n, bodies, room),
+        smooth=_smooth_room(step, work, bodies, room),
         path=_path_room(n, bodies, contacts + len(model.pairs)),
         event=_event_room(n, bodies, contacts, room),
         impact=_impact_room(n, contacts, room),

@@ -209,6 +209,19 @@ class Worst:
     kinetic_energy: float  # J
 
 
+class Regime(NamedTuple):
+    """What was decided at the last event: events change it, smooth motion only reads it."""
+
+    mode: NDArray[np.int8]  # by permanent number of the contact
+    grip: NDArray[np.int8]  # by coordinate: what dry friction in its bearing does, see dynamics/forces.py
+    awake: NDArray[np.int8]  # by coordinate; 0: asleep on its contacts
+    active: Integers  # closed contacts of awake bodies, then those of sleeping ones, by island (coupled_motion.py)
+    upto: Integers  # by place in `active`, of awake bodies: the place behind the last contact of the same island
+
+
+RegimeRef = by_reference(Regime, __name__)
+
+
 class State(NamedTuple):
     """t, q, u, modes, and what else the future depends on."""
 
@@ -216,11 +229,7 @@ class State(NamedTuple):
     q: Array
     u: Array
     a: Array
-    mode: NDArray[np.int8]  # by permanent number of the contact
-    grip: NDArray[np.int8]  # by coordinate: what dry friction in its bearing does, see dynamics/forces.py
-    awake: NDArray[np.int8]  # by coordinate; 0: asleep on its contacts
-    active: Integers  # closed contacts of awake bodies, then those of sleeping ones, by island (coupled_motion.py)
-    upto: Integers  # by place in `active`, of awake bodies: the place behind the last contact of the same island
+    regime: Regime
     instant: Instant
     returning: ReboundWatch
     side_u: NDArray[np.int8]  # last sign of the velocity of a sprung coordinate
@@ -254,11 +263,13 @@ def new_state(model: Model, q: Array, u: Array) -> State:
         q=q.astype(float).copy(),
         u=u.astype(float).copy(),
         a=np.zeros(n),
-        mode=np.zeros(len(model.contacts), np.int8),
-        grip=np.zeros(n, np.int8),
-        awake=np.ones(n, np.int8),
-        active=np.zeros(room_for(model), np.int64),
-        upto=np.zeros(room_for(model), np.int64),
+        regime=Regime(
+            mode=np.zeros(len(model.contacts), np.int8),
+            grip=np.zeros(n, np.int8),
+            awake=np.ones(n, np.int8),
+            active=np.zeros(room_for(model), np.int64),
+            upto=np.zeros(room_for(model), np.int64),
+        ),
         instant=instant,
         returning=returning,
         side_u=np.sign(speed).astype(np.int8),
@@ -302,7 +313,8 @@ class StateArrays(NamedTuple):
 
 def arrays_of(state: State) -> StateArrays:
     """The arrays of a state: what is written into them is written into the state."""
-    parts: dict[str, NDArray[Any]] = {name: getattr(state, name) for name in StateArrays._fields if hasattr(state, name)}
+    parts: dict[str, NDArray[Any]] = state._asdict() | state.regime._asdict()
+    parts = {name: parts[name] for name in StateArrays._fields if name in parts}
     parts |= {name: words_of(parts[name], float) for name in ("clock", "sums", "worst")}
     parts["counts"] = words_of(state.counts, int)
     parts["numbers"], parts["lenience"] = words_of(state.instant, int)[:NUMBERS], row_of(state.instant)["lenience"]
@@ -312,7 +324,10 @@ def arrays_of(state: State) -> StateArrays:
 
 def copy_of_state(state: State) -> State:
     """A state of its own."""
-    return State._make(part.copy() if isinstance(part, np.ndarray) else copy_of(part) for part in state)
+    parts: dict[str, Any] = {
+        name: part.copy() if isinstance(part, np.ndarray) else copy_of(part) for name, part in state._asdict().items()
+    }
+    return State(**parts | {"regime": Regime._make(part.copy() for part in state.regime)})
 
 
 def write_state(state: State, other: State) -> None:

@@ -66,39 +66,40 @@ def _row_spacing(model, options, i):
 
 
 @kernel
-def _time_far(model, state, i):
-    """A time (s) in which coordinate i goes no further than `FLIGHT_SIZES` times the scene's size.
+def _time_far(coordinate, grip, q, u):
+    """A time (s) in which the coordinate goes no further than `FLIGHT_SIZES` times the scene's size.
 
     What falls with 1e30 m/s² would be looked for in 1e27 places along one step.
     """
-    far = FLIGHT_SIZES * model.coordinates[i].scale
-    speed, bound = abs(state.u[i]), acceleration_bound(model.coordinates[i], state.grip[i], state.q[i], state.u[i])
+    far = FLIGHT_SIZES * coordinate.scale
+    speed, bound = abs(u), acceleration_bound(coordinate, grip, q, u)
     both = speed + math.sqrt(speed * speed + 2.0 * bound * far)
     return 2.0 * far / both if both > 0.0 else math.inf
 
 
 @kernel
-def flight_length(model, state, options):
+def flight_length(model, regime, q, u, options, time):
     """(length, row spacing): of an exact flight now."""
-    length, spacing = longest_step(options, state.clock.time), math.inf
+    length, spacing = longest_step(options, time), math.inf
     for i in range(len(model.coordinates)):
-        if state.awake[i]:
-            length = min(length, quarter_period(model.coordinates[i]), _time_far(model, state, i))
+        if regime.awake[i]:
+            far = _time_far(model.coordinates[i], regime.grip[i], q[i], u[i])
+            length = min(length, quarter_period(model.coordinates[i]), far)
             spacing = min(spacing, _row_spacing(model, options, i))
     return min(length, FLIGHT_PHASE / options.row_phase * spacing), spacing
 
 
 @kernel
-def begin_flight(model, state, length, out_step):
+def begin_flight(model, regime, q, u, time, length, out_step):
     """Make the current step an exact flight of all awake coordinates."""
     step = out_step
     step.span.kind = FLIGHT
-    step.span.start, step.span.length = state.clock.time, length
+    step.span.start, step.span.length = time, length
     for i in range(len(model.coordinates)):
-        step.q[i], step.u[i], step.awake[i], step.grip[i] = state.q[i], state.u[i], state.awake[i], state.grip[i]
+        step.q[i], step.u[i], step.awake[i], step.grip[i] = q[i], u[i], regime.awake[i], regime.grip[i]
         step.bound[i] = 0.0
-        if state.awake[i]:
-            step.bound[i] = acceleration_bound(model.coordinates[i], state.grip[i], state.q[i], state.u[i])
+        if regime.awake[i]:
+            step.bound[i] = acceleration_bound(model.coordinates[i], regime.grip[i], q[i], u[i])
 
 
 @kernel
@@ -122,16 +123,16 @@ def add_flight_sums(model, step, end, out_sums):
 
 
 @kernel
-def keep_flight_rows(model, state, end, spacing, step, record):
-    """Rows of a flight, evenly spaced, the last one at its end; brings the state there."""
+def keep_flight_rows(model, end, spacing, step, record, out_q, out_u, out_a):
+    """Rows of a flight, evenly spaced, the last one at its end, where q, u and a are left."""
     n = len(model.coordinates)
     rows = 1 if spacing == math.inf or not is_kept(record, step.span.start, end) else max(1, math.ceil(end / spacing))
     for row in range(1, rows + 1):
         tau = end * row / rows if row < rows else end
         for i in range(n):
-            state.q[i], state.u[i] = coordinate_within(model, step, i, tau)
-            state.a[i] = flight_acceleration(model, step, i, state.q[i], state.u[i])
-        keep_row(record, step.span.start + tau, state.q, state.u, state.a)
+            out_q[i], out_u[i] = coordinate_within(model, step, i, tau)
+            out_a[i] = flight_acceleration(model, step, i, out_q[i], out_u[i])
+        keep_row(record, step.span.start + tau, out_q, out_u, out_a)
 
 
 # When did a sprung body turn back, and when did it pass its rest position?

@@ -221,7 +221,7 @@ CLOSED = 0.1  # of what the event loop takes for a closed gap; some units in the
 
 def in_force(state: State) -> NDArray[np.int64]:
     """The closed contacts."""
-    return state.active[: int(state.instant.awake_contacts + state.instant.sleeping_contacts)]
+    return state.regime.active[: int(state.instant.awake_contacts + state.instant.sleeping_contacts)]
 
 
 def follow(loop: Loop, state: State, coordinate: int) -> bool:
