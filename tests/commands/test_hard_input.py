@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -87,3 +88,62 @@ def test_nothing_is_written_through_a_link_out_of_a_received_folder(name: str, t
         with pytest.raises(PermissionError, match="is a link out of"):
             Journal(run, {}, resume=True)
     assert target.read_text() == "mine" and [one.name for one in mine.iterdir()] == [target.name]
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    run = tmp_path_factory.mktemp("received") / "run"
+    assert main(["run", str(LEVER), "--duration", "0.05 s", "--no-plots", "-o", str(run)]) == 0
+    return run
+
+
+WRITING = {  # what writes to the links of a received folder: "away", to a folder, and "a.<ending>", to files
+    "run": f"run {LEVER} --duration 1e-3s --force -o away",
+    "run beside": f"run {LEVER} --duration 1e-3s -o away/new",
+    "sweep": f"sweep {LEVER} bodies.lever.angle=0,1deg --force -o away",
+    "new": "new swiss_lever --force -o away",
+    "new of a drawing": f"new {LEVER}/lever.dxf --force -o away",
+    "export": f"export {LEVER} --force -o away",
+    "bench": "bench --quick --scene incline -o .",
+    "bench away": "bench --quick --scene incline -o away",
+    "demo": "demo --force -o away",
+    "check": f"check {LEVER} --png a.png",
+    "inspect": f"inspect {LEVER}/lever.dxf --png a.png",
+    "plot": "plot . -o a.png",
+    "plots": "plot . --kind kinematics,energy -o away",
+    "own plots": "plot .",
+    "report": "report . -o a.html",
+    "movie": "movie . -o a.mp4",
+    "sound": "sound . -o a.wav",
+}
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="links of Unix")
+@pytest.mark.parametrize("command", WRITING.values(), ids=list(WRITING))
+def test_no_command_follows_a_link_out_of_a_received_folder(
+    command: str, finished: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    mine, received = tmp_path / "mine", shutil.copytree(finished, tmp_path / "received")
+    shutil.copytree(finished, mine)
+    for name in ("bench.md", *(f"a.{ending}" for ending in ("png", "html", "mp4", "wav"))):
+        (mine / name).write_text("mine")
+        (received / name).symlink_to(mine / name)
+    for name in ("away", "plots"):
+        (received / name).symlink_to(mine)
+    before = {path: path.read_bytes() for path in mine.rglob("*") if path.is_file()}
+    monkeypatch.chdir(received)
+    assert main(command.split()) == 2
+    assert " is a link out of the " in capsys.readouterr().err
+    assert {path: path.read_bytes() for path in mine.rglob("*") if path.is_file()} == before
+    assert sum(path.is_symlink() for path in received.iterdir()) == 7
+
+
+def test_a_link_among_solids_is_replaced_and_not_written_through(tmp_path: Path) -> None:
+    """A folder that is written whole changes places with the new one: links of its own files are gone with the old."""
+    solids, mine = tmp_path / "solids", tmp_path / "mine"
+    mine.write_text("mine")
+    solids.mkdir()
+    (solids / "export.json").write_text('{"files": ["lever.svg", "export.json"]}')
+    (solids / "lever.svg").symlink_to(mine)
+    assert main(["export", str(LEVER), "--format", "svg", "--bodies", "lever", "--force", "-o", str(solids)]) == 0
+    assert mine.read_text() == "mine" and not (solids / "lever.svg").is_symlink()

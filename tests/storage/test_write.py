@@ -10,7 +10,7 @@ import pytest
 from every_time import few
 from storage.disk_faults import Disk, killed_at, not_yet_on_disk, watched
 
-from watchsim.storage.write import PREFIX, make, sweep, write_file, write_folder
+from watchsim.storage.write import PREFIX, make, real, sweep, write_file, write_folder
 
 MOST = 200  # actions of one writing
 OLD = {"numbers.txt": "old", "only_old.txt": "old", "mine.txt": "mine", "deep/mine.txt": "mine"}
@@ -186,10 +186,20 @@ def test_a_link_stays_a_link(tmp_path: Path) -> None:
     write_folder(link, fill, ours, "the results")
     assert link.is_symlink() and link.resolve() == behind
     assert contents(behind) == {**NEW, **KEPT}
-    picture = tmp_path / "picture.png"
+    picture = behind / "picture.png"
     picture.symlink_to(behind / "mine.txt")
     write_file(picture, lambda path: path.write_text("new"), "the picture")
     assert picture.is_symlink() and (behind / "mine.txt").read_text() == "new"
+
+
+def test_a_path_with_dots_is_no_link(tmp_path: Path) -> None:
+    run = tmp_path / "run"
+    (run / "plots").mkdir(parents=True)
+    (run / "summary.json").write_text("{}")
+    assert real(run / "plots" / ".." / ".." / "other" / "a.png") == tmp_path.resolve() / "other" / "a.png"
+    (run / "away").symlink_to(tmp_path)
+    with pytest.raises(PermissionError, match="is a link out of the results folder"):
+        real(tmp_path / "run" / ".." / "run" / "away" / "a.png")
 
 
 def test_permissions_of_a_replaced_folder_stay(tmp_path: Path) -> None:

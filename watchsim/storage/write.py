@@ -258,24 +258,32 @@ def abandon() -> None:
 Ours = Callable[[str], bool]  # of a path in the folder, with slashes: is it a file of ours, which may be replaced?
 
 
-MARKS = ("summary.json", "trajectory.npz", "rows.jsonl", "sweep.json")  # one of them is in every folder of results
+MARKS = ("summary.json", "trajectory.npz", "rows.jsonl", "sweep.json", "export.json", "bench.json", "incline.png")  # of our folders
 
 
 def real(path: Path) -> Path:
     """Where to write: what a link points to, so that it stays a link.
 
-    PermissionError for a link that leads out of a folder of results: that may come from somebody else, who could have put it
-    there to have another file overwritten.
+    PermissionError for a file that is a link out of its folder, and for any link out of a folder of results: the folder may
+    come from somebody else, who could have put the link there to have another file overwritten.
     """
-    path = path.absolute()
-    for folder in (path.parent, path.parent.parent):
-        if any(os.path.lexists(folder / name) for name in MARKS) and not _ends_in(folder, path):
-            link = path if path.is_symlink() else path.parent
+    path = _without_dots(path.absolute())
+    file = path.is_symlink() and not path.is_dir()
+    for folder in path.parents:
+        received = any(os.path.lexists(folder / name) for name in MARKS)
+        if (received or (file and folder == path.parent)) and not _ends_in(folder, path):
+            link = next(one for one in (path, *path.parents) if one.is_symlink())
             raise PermissionError(
-                f"{link} is a link out of the results folder {folder}, which nothing is written through. "
+                f"{link} is a link out of the {'results ' if received else ''}folder {folder}, which nothing is written through. "
                 "Remove the link, or choose another place"
             )
     return path.resolve() if path.is_symlink() else path
+
+
+def _without_dots(path: Path) -> Path:
+    """The path with everything before its last `..` looked up: that way one named on purpose leads out of a folder."""
+    kept = len(path.parts) - path.parts[::-1].index("..") if ".." in path.parts else 0
+    return Path(os.path.realpath(Path(*path.parts[:kept])), *path.parts[kept:]) if kept else path
 
 
 def _ends_in(folder: Path, path: Path) -> bool:
