@@ -5,8 +5,10 @@ from __future__ import annotations
 import dataclasses
 import json
 import math
+import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 import shapely
 from every_time import few
@@ -201,6 +203,33 @@ def test_a_ratchet_passes_its_click(tmp_path):
     click = [math.degrees(row[1]) for row in found.cycle.rows]
     assert click[-1] == pytest.approx(click[0], abs=1e-3)
     assert max(click) - min(click) > 10.0
+
+
+@pytest.mark.parametrize(
+    ("name", "sentence", "sweep"),
+    [
+        ("ratchet", "wheel passes: 1 of 24 teeth in a whole pitch", None),
+        ("winding_click", "wheel passes: 1 of 18 teeth in a whole pitch", None),
+        ("verge", "crown_wheel passes: 1 of 27 teeth in a whole pitch", 40.0),
+    ],
+)
+def test_a_wheel_without_oscillator_passes_a_tooth_a_pitch(
+    name: str, sentence: str, sweep: float | None, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Outlines that touch exactly at the start, a click on its stop, and a large crown wheel: in seconds, not minutes."""
+    start = time.process_time()
+    assert main(["check", str(PROFILES / name), "--turn"]) == 0
+    assert capsys.readouterr().out.splitlines()[-1] == sentence
+    assert time.process_time() - start < 20.0
+    found = turn(ws.load(PROFILES / name))
+    rows = np.degrees(found.cycle.q[found.first :])
+    if sweep is None:  # the click comes back, and never goes beyond the stop on which its spring presses it
+        (spring,) = found.scene.springs
+        assert rows[-1, 1] == pytest.approx(rows[0, 1], abs=1e-3)
+        assert spring.stop is None or rows[:, 1].max() <= math.degrees(spring.stop) + 1e-3
+    else:  # the verge turns to and fro by what the flags give way
+        assert np.ptp(rows[:, 0]) == pytest.approx(sweep, abs=0.01)
+    assert all(distance > 0.0 for row in found.cycle.distances[1:] for distance in row)
 
 
 def test_what_cannot_be_turned_is_refused_in_one_go(tmp_path):

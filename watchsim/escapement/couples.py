@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from watchsim.contact.edge_distance import EDGE, edge_records, nearest_edges, point_on
-from watchsim.geometry.primitives import Edge, Point
+from watchsim.geometry.primitives import Arc, Edge, Point
 from watchsim.jit import callable_kernel
 from watchsim.model import records
 from watchsim.scene.scene import Body, Scene
@@ -33,6 +33,7 @@ class Near:
     crossing: bool
     _first: tuple[Any, float, Pose]
     _second: tuple[Any, float, Pose]
+    _outward: tuple[float, float]  # of either edge: 1 where its normal points out of the material, else -1
     rows: tuple[int, int] = (-1, -1)
 
     @property
@@ -54,6 +55,18 @@ class Near:
     def on_b(self) -> Point:
         return _place(*self._second)
 
+    @property
+    def normal(self) -> Point:
+        """Unit vector from b to a; where the points are one, out of the material of an edge that has it between its ends."""
+        away = math.dist(self.on_a, self.on_b)
+        if away > 0.0 and not self.crossing:
+            return (self.on_a[0] - self.on_b[0]) / away, (self.on_a[1] - self.on_b[1]) / away
+        of_a = self.faces[1] < 0 <= self.faces[0]
+        edge, way, (_, _, c, s) = self._first if of_a else self._second
+        out, turn = (-self._outward[0] if of_a else self._outward[1]), edge.curvature * way
+        nx, ny = edge.nx * math.cos(turn) - edge.ny * math.sin(turn), edge.ny * math.cos(turn) + edge.nx * math.sin(turn)
+        return out * (c * nx - s * ny), out * (s * nx + c * ny)
+
 
 def _place(edge: Any, way: float, pose: Pose) -> Point:
     """The point of a body's edge at that way from the edge's middle, in the movement."""
@@ -72,6 +85,7 @@ class Couple:
     edges: tuple[Any, Any]
     reach: tuple[float, float]  # m: the farthest point of either from its body's origin
     room: tuple[Any, Any]
+    outward: tuple[list[float], list[float]]  # of each edge: 1 where its normal points out of the material, else -1
 
     def near(self, pose_a: Pose, pose_b: Pose) -> Near:
         """The nearest points at those poses."""
@@ -79,7 +93,7 @@ class Couple:
         near = nearest_edges(first, pose_a, second, pose_b, *self.room)
         i, j = int(near.edge_a), int(near.edge_b)
         on_a, on_b = (first[i], near.way_a, pose_a), (second[j], near.way_b, pose_b)
-        return Near(float(near.distance), bool(near.crossing), on_a, on_b, (i, j))
+        return Near(float(near.distance), bool(near.crossing), on_a, on_b, (self.outward[0][i], self.outward[1][j]), (i, j))
 
 
 def pose_of(body: Body, q: float) -> Pose:
@@ -100,7 +114,7 @@ def motion_at(body: Body, place: Point) -> Point:
 
 def opening(bodies: tuple[Body, ...], couple: Couple, near: Near, number: int) -> float:
     """How the distance grows with the coordinate of body `number`: m/rad, or 1 for a slide along the normal."""
-    nx, ny = ((p - q) / near.distance for p, q in zip(near.on_a, near.on_b, strict=True))
+    nx, ny = near.normal
     if number == couple.a:
         vx, vy = motion_at(bodies[number], near.on_a)
         return nx * vx + ny * vy
@@ -125,12 +139,18 @@ def couples(scene: Scene) -> tuple[Couple, ...]:
                 room = records(EDGE, len(rows[0])), records(EDGE, len(rows[1]))
                 reach = _span(kept[0])[1], _span(kept[1])[1]
                 key = (numbers[a.name], layer_a, numbers[b.name], layer_b)
-                made[key] = Couple(numbers[a.name], numbers[b.name], (layer_a, layer_b), rows, reach, room)
+                outward = _outward(kept[0]), _outward(kept[1])
+                made[key] = Couple(numbers[a.name], numbers[b.name], (layer_a, layer_b), rows, reach, room, outward)
     return tuple(made.values())
 
 
 def _edges(body: Body, layer: str) -> list[Edge]:
     return [edge for loop in body.loops if loop.layer == layer for edge in loop.edges]
+
+
+def _outward(edges: list[Edge]) -> list[float]:
+    """Of each record of these edges: 1 where its normal points to the right, out of the material, -1 for hollow arcs."""
+    return [-1.0 if isinstance(edge, Arc) and edge.sweep < 0.0 else 1.0 for edge in edges if edge.length > 0.0]
 
 
 def _within(own: Body, edges: list[Edge], other: Body, others: list[Edge]) -> list[Edge]:

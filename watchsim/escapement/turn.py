@@ -20,7 +20,7 @@ from watchsim.geometry.primitives import Point
 from watchsim.mechanism.compile import compile_scene
 from watchsim.scene.errors import Fault, SceneError
 from watchsim.scene.roles import Oscillator, drive_direction, keeps_time, oscillators
-from watchsim.scene.scene import Scene
+from watchsim.scene.scene import Body, Scene
 from watchsim.scene.trains import goes_with
 from watchsim.tolerances import CLEARANCE
 
@@ -46,10 +46,11 @@ class Turn:
 
     @property
     def advanced(self) -> float:
-        """Teeth by which the wheel went on over the last cycle, in the direction of its drive."""
+        """Teeth by which the wheel went on over the last cycle, in the direction of its drive, or in which it was led."""
         number = self.names.index(self.wheel)
         q = self.cycle.q
-        return float(drive_direction(self.scene, self.wheel) * (q[-1, number] - q[self.first, number]) / self.cycle.pitch)
+        teeth = float((q[-1, number] - q[self.first, number]) / self.cycle.pitch)
+        return abs(teeth) if self.oscillator is None else drive_direction(self.scene, self.wheel) * teeth
 
 
 def turn(scene: Scene, swing: float | None = None) -> Turn:
@@ -67,12 +68,11 @@ def turn(scene: Scene, swing: float | None = None) -> Turn:
     teeth = _teeth(scene, wheel)
     pitch = math.tau / teeth
     if oscillator is None:
-        rests = {names.index(one.body): one.rest for one in scene.springs}
-        pressed = {i: math.copysign(1.0, rest - parts.q[i]) for i, rest in rests.items()}
-        parts.stay.update(parts.train(number))
-        cycle = Cycle(parts, number, pressed, pitch, rests)
-        cycle.follow([parts.q[number] + sign * pitch])
-        return Turn(scene, cycle, teeth, None, wheel, 0)
+        cycle = _led_wheel(scene, number, sign * pitch)
+        if cycle.jam is not None:  # a click holds it that way, and lets it pass the other way
+            other = _led_wheel(scene, number, -sign * pitch)
+            cycle = cycle if other.jam is not None else other
+        return Turn(scene, cycle, teeth, None, wheel, cycle.turned[1] if len(cycle.turned) > 1 else 0)
     led = names.index(oscillator.body)
     parts.stay.update(parts.train(led))
     start = parts.q[led] - oscillator.rest
@@ -83,6 +83,18 @@ def turn(scene: Scene, swing: float | None = None) -> Turn:
     cycle.follow([*ends, near, far])
     first = cycle.turned[len(ends)] if len(cycle.turned) > len(ends) else 0
     return Turn(scene, cycle, teeth, oscillator.body, wheel, first)
+
+
+def _led_wheel(scene: Scene, number: int, pitch: float) -> Cycle:
+    """A wheel led by two pitches, the sprung bodies pressed on: the first brings the parts to where every further one does."""
+    parts = assembly(scene)
+    names = [body.name for body in scene.bodies]
+    rests = {names.index(one.body): one.rest if one.stop is None else one.stop for one in scene.springs}
+    pressed = {i: math.copysign(1.0, one.rest - parts.q[i]) for i, one in zip(rests, scene.springs, strict=True)}
+    parts.stay.update(parts.train(number))
+    start, cycle = parts.q[number], Cycle(parts, number, pressed, abs(pitch), rests)
+    cycle.follow([start + pitch, start + 2.0 * pitch])
+    return cycle
 
 
 def swinging(scene: Scene) -> Oscillator | None:
@@ -100,6 +112,9 @@ def closes(found: Turn) -> bool:
     return abs(found.advanced - round(found.advanced)) < CLOSED and all(way < CLOSED for way in others)
 
 
+PITCH_RESOLUTION = 1e-6  # m: edges of a rack whose lengths differ by less are alike
+
+
 def _driven(scene: Scene, oscillator: str | None) -> str:
     """The wheel that is pressed: what is driven, or the first in its train that may touch something."""
     driven = next(torque.body for torque in scene.torques if torque.body != oscillator)
@@ -113,15 +128,35 @@ def _hangs(scene: Scene, led: int) -> bool:
 
 
 def _teeth(scene: Scene, wheel: str) -> int:
-    """By how many parts of a turn the wheel's outer outlines come back onto themselves; windows between arms do not count."""
+    """By how many parts of a turn the wheel's outer outlines come back onto themselves; windows between arms do not count.
+
+    Of a wheel without outlines, the teeth of a rack that goes with it, as of a crown wheel seen from its side, in one turn.
+    """
     bodies = tuple(
         replace(body, loops=tuple(loop for loop in body.loops if not loop.hole)) if body.name == wheel else body
         for body in scene.bodies
     )
+    if not scene.body(wheel).loops:
+        racks = {name: way for name, way in goes_with(scene, wheel).items() if scene.body(name).motion == "slide"}
+        pitches = ((_rack_pitch(scene.body(name)), way) for name, way in racks.items())
+        return next((max(1, round(math.tau * abs(way) / pitch)) for pitch, way in pitches if pitch > 0.0), 1)
     compiled = compile_scene(replace(scene, bodies=bodies))
     number = [body.name for body in scene.bodies].index(wheel)
     own = compiled.model.primitives[compiled.model.primitives.body == number]
     return turn_symmetry(own, 0.5 * CLEARANCE * compiled.size).fold
+
+
+def _rack_pitch(body: Body) -> float:
+    """How far apart (m) edges of one length and direction follow each other along a rack's axis; 0 where none come again."""
+    c, s = math.cos(body.angle), math.sin(body.angle)
+    along = (c * body.axis[0] + s * body.axis[1], c * body.axis[1] - s * body.axis[0])
+    alike: dict[tuple[float, ...], list[float]] = {}
+    for edge in (edge for loop in body.loops for edge in loop.edges):
+        shape = (edge.length / PITCH_RESOLUTION, *(100.0 * way for way in edge.tangent(0.5)))
+        place = edge.point(0.5)
+        alike.setdefault(tuple(round(one) for one in shape), []).append(along[0] * place[0] + along[1] * place[1])
+    gaps = np.diff(np.sort(max(alike.values(), key=len, default=[])))
+    return float(np.median(gaps)) if len(gaps) else 0.0
 
 
 def _refuse(scene: Scene) -> None:
@@ -352,11 +387,10 @@ def turn_text(found: Turn) -> str:
     """The same for people."""
     _, sentence = verdict(found)
     names = _moving(found)
-    widths = {name: max(len(name) + 2, 10) for name in names}
+    widths = {name: max(len(f"{name} {_unit(found, name)}") + 2, 10) for name in names}
+    pressed = [f"{found.names[number]} pressed on" for number in found.cycle.pressed]
     lines = [
-        f"turned by hand: {found.names[found.cycle.led]} led, "
-        + ", ".join(f"{found.names[number]} pressed on" for number in found.cycle.pressed)
-        + "; no forces",
+        ", ".join([f"turned by hand: {found.names[found.cycle.led]} led", *pressed]) + "; no forces",
         "  " + "".join(f"{f'{name} {_unit(found, name)}':>{widths[name]}}" for name in names) + "   what happens",
     ]
     for one in happenings(found):

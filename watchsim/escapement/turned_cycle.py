@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.escapement.couples import Couple, Near, couples, motion_at, opening, pose_of
+from watchsim.escapement.couples import HARMLESS, Couple, Near, couples, motion_at, opening, pose_of
 from watchsim.geometry.primitives import Point
 from watchsim.scene.scene import Body, Scene
 from watchsim.scene.trains import goes_with
@@ -26,12 +26,15 @@ from watchsim.scene.trains import goes_with
 
 TOUCHING = 2e-8  # m: what comes so close is in touch
 CLOSE_UP = 1e-8  # m: how close a body is driven up to another
-LARGEST_PUSH = 2e-5  # m: what is not free after so much is jammed
+LARGEST_PUSH = (
+    2e-5  # m: what is not free after so much is jammed; where the led body goes further in two fine steps, after those
+)
 LEVERAGE = 0.02  # of the arm: a contact whose normal passes closer to the pivot holds instead of turning
 CREEP = 1e-6  # m: how far a body goes on along what it touches, before it looks again
 NEARBY = 5e-6  # m: what is further away is not looked at in detail
 ROUNDS = 20000
-HALVINGS = 30
+HALVINGS = 60
+CLOSEST = 1e-13  # m: how exactly that distance is met
 
 
 class Jam(Exception):
@@ -52,6 +55,10 @@ class Assembly:
     q: list[float]
     stay: set[int] = field(default_factory=set)  # bodies that nothing pushes away: fixed ones, and the one that is led
     trains: dict[int, dict[int, float]] = field(default_factory=dict)  # body -> how far each geared to it goes for one unit
+    stops: dict[int, tuple[float, float]] = field(
+        default_factory=dict
+    )  # where a spring's stop holds a body, and against which sign
+    largest_push: float = LARGEST_PUSH  # m
     _known: dict[int, tuple[float, float, Near]] = field(default_factory=dict)
 
     def of(self, number: int) -> Iterator[Couple]:
@@ -173,22 +180,35 @@ class Assembly:
             raise Jam(couple, place, f"the push goes through the pivot of {self.bodies[number].name}")
         sign, start = math.copysign(1.0, rate), self.q[number]
         others = [
-            (one, self.near(one)) for one in self.of(number) if one is not couple and self.room(one) <= 10.0 * LARGEST_PUSH
+            (one, self.near(one)) for one in self.of(number) if one is not couple and self.room(one) <= 10.0 * self.largest_push
         ]
         low, high = 0.0, 1e-10 / reach
         while True:
             self.place(number, start + sign * high)
             if self.near(couple).free:
                 break
-            low, high = high, 2.0 * high
-            if high * reach > LARGEST_PUSH:
+            low, high = high, 4.0 * high
+            if high * reach > self.largest_push:
                 self.place(number, start)
                 raise Jam(couple, place, f"{self.bodies[number].name} cannot be pushed out of the way")
-        for _ in range(HALVINGS):
-            middle = 0.5 * (low + high)
+        for _ in range(HALVINGS):  # back to where the two are just free, along the distance while that leads there
+            near = self.near(couple)
+            left, rate = near.distance - HARMLESS, sign * self.opening(couple, near, number)
+            if left * reach <= CLOSEST * abs(rate) or high - low <= CLOSEST / reach:
+                break
+            middle = high - 0.999 * left / rate if rate > 0.0 else low
+            middle = middle if low < middle < high else 0.5 * (low + high)
             self.place(number, start + sign * middle)
-            low, high = (low, middle) if self.near(couple).free else (middle, high)
+            if self.near(couple).free:
+                high = middle
+            else:
+                low = middle
+                self.place(number, start + sign * high)
         self.place(number, start + sign * high)
+        stop, against = self.stops.get(number, (0.0, 0.0))
+        if against * (self.q[number] - stop) > high + TOUCHING / reach:
+            self.place(number, start)
+            raise Jam(couple, place, f"{self.bodies[number].name} stands on its stop")
         for one, was in others:
             if not self.is_free(one):
                 if not was.distance > 0.0:
@@ -208,7 +228,10 @@ def assembly(scene: Scene) -> Assembly:
     fixed = {i for i, body in enumerate(scene.bodies) if body.motion == "fixed"}
     names = {body.name: i for i, body in enumerate(scene.bodies)}
     trains = {i: {names[other]: far for other, far in goes_with(scene, name).items()} for name, i in names.items()}
-    return Assembly(scene.bodies, couples(scene), q, fixed, trains)
+    stops = {
+        names[one.body]: (one.stop, math.copysign(1.0, one.rest - one.stop)) for one in scene.springs if one.stop is not None
+    }
+    return Assembly(scene.bodies, couples(scene), q, fixed, trains, stops)
 
 
 FINE, FINEST = math.radians(0.1), math.radians(0.0005)  # steps of a turning body; lengths: times the reach of its outlines
@@ -263,6 +286,10 @@ class Cycle:
 
     def follow(self, ends: list[float]) -> None:
         """Lead the body to each of these coordinates in turn; ends early with `jam` or `runaway`."""
+        parts = self.assembly
+        if parts.bodies[self.led].motion == "pivot":
+            steps = (2.0 * FINE * parts.speed(couple, self.led) for couple in parts.of(self.led))
+            parts.largest_push = max([LARGEST_PUSH, *steps])
         try:
             self._press()
             self._note()

@@ -258,7 +258,15 @@ def abandon() -> None:
 Ours = Callable[[str], bool]  # of a path in the folder, with slashes: is it a file of ours, which may be replaced?
 
 
-MARKS = ("summary.json", "trajectory.npz", "rows.jsonl", "sweep.json", "export.json", "bench.json", "incline.png")  # of our folders
+MARKS = (
+    "summary.json",
+    "trajectory.npz",
+    "rows.jsonl",
+    "sweep.json",
+    "export.json",
+    "bench.json",
+    "incline.png",
+)  # of our folders
 
 
 def real(path: Path) -> Path:
@@ -274,8 +282,8 @@ def real(path: Path) -> Path:
         if (received or (file and folder == path.parent)) and not _ends_in(folder, path):
             link = next(one for one in (path, *path.parents) if one.is_symlink())
             raise PermissionError(
-                f"{link} is a link out of the {'results ' if received else ''}folder {folder}, which nothing is written through. "
-                "Remove the link, or choose another place"
+                f"{link} is a link out of the {'results ' if received else ''}folder {folder}, which nothing is written "
+                "through. Remove the link, or choose another place"
             )
     return path.resolve() if path.is_symlink() else path
 
