@@ -70,7 +70,7 @@ PAGES = {
         [
             *("plot_kinematics", "plot_phases", "plot_timeline", "plot_torque", "plot_phase_portrait", "plot_forces"),
             *("plot_energy", "plot_timing", "plot_tape", "plot_sweep", "plot_sensitivity"),
-            *("movie", "frame", "show", "sound", "report"),
+            *("movie", "frame", "show", "sound", "report", "listen", "watchsim.analysis.listen:Heard"),
         ],
     ),
     "verification": ("Verification", ["verify"]),

@@ -48,6 +48,7 @@ _HOMES = {
     "plot_forces": "watchsim.render.force_plot",
     "plot_sensitivity": "watchsim.render.study_plot",
     "sound": "watchsim.analysis.sound",
+    "listen": "watchsim.analysis.listen",
     "report": "watchsim.pages.report_page",
     "show": "watchsim.pages.notebook",
     "profiles_dir": "watchsim.paths",
@@ -60,6 +61,7 @@ __all__ = [*_HOMES, *_PACKAGES, "__version__"]  # noqa: PLE0604 - the keys are t
 if TYPE_CHECKING:
     from watchsim import designs as designs
     from watchsim.analysis.forces import forces as forces
+    from watchsim.analysis.listen import listen as listen
     from watchsim.analysis.sound import sound as sound
     from watchsim.analysis.summary import summary as summary
     from watchsim.analysis.timing import beats as beats

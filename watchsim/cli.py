@@ -74,6 +74,7 @@ COMMANDS = (
     "movie",
     "report",
     "sound",
+    "listen",
     "steady",
     "sweep",
     "verify",

@@ -98,11 +98,21 @@ def plot_tape(run: Trajectory, window: Sequence[float] | None = None, width: flo
         if last <= first:
             known = f"the first comes at {shown.t[0]:.6g} s, the last at {shown.t[-1]:.6g} s"
             raise ValueError(f"no beat is heard from {start:.9g} s to {end:.9g} s: {known}")
+    return tape_figure(shown, run.scene.title, f"Paper of a timegrapher{_beside(run)}", inside, width)
+
+
+def tape_figure(shown: Tape, title: str, about: str, inside: slice = slice(None), width: float = style.FULL) -> Figure:
+    """The same of any tape, such as that of a recording, which has no true amplitude."""
     top, step = style.HEADING + TAPE_KEY, TAPE_TALL + TAPE_BETWEEN
-    made = style.figure(width, top + PAPER_TALL + 3.0 * step + FOOT)
-    style.heading(made, run.scene.title, f"Paper of a timegrapher{_beside(run)}")
+    rows = [("rate (s/d)", shown.rate_s_per_d, 1.0), ("amplitude (°)", shown.amplitude_deg, 1.0),
+            ("beat error (ms)", shown.beat_error_ms, 0.01)]  # fmt: skip
+    read = shown.shown_deg[inside]
+    if not np.isfinite(np.concatenate([shown.amplitude_deg[inside], read])).any():
+        del rows[1]
+    made = style.figure(width, top + PAPER_TALL + len(rows) * step + FOOT)
+    style.heading(made, title, about)
     wide = width - LEFT - TAPE_RIGHT
-    places = [(top, PAPER_TALL), *((top + PAPER_TALL + TAPE_BETWEEN + k * step, TAPE_TALL) for k in range(3))]
+    places = [(top, PAPER_TALL), *((top + PAPER_TALL + TAPE_BETWEEN + k * step, TAPE_TALL) for k in range(len(rows)))]
     panels = [style.panel(made, LEFT, up, wide, tall) for up, tall in places]
     for axes in panels:
         style.dress(axes)
@@ -110,13 +120,10 @@ def plot_tape(run: Trajectory, window: Sequence[float] | None = None, width: flo
     t = shown.t[inside]
     size = _dot(len(t))
     _paper(panels[0], shown, inside, size)
-    rows = (("rate (s/d)", shown.rate_s_per_d, 1.0), ("amplitude (°)", shown.amplitude_deg, 1.0),
-            ("beat error (ms)", shown.beat_error_ms, 0.01))  # fmt: skip
     for axes, (label, values, least) in zip(panels[1:], rows, strict=True):
         _dots(axes, *reduced(t, values[inside], COLUMNS), "o", SERIES[0], size, label, "true")
         axes.set_ylabel(label)
         _room(axes, values[inside], least)
-    read = shown.shown_deg[inside]
     if np.isfinite(read).any():
         _dots(panels[2], *reduced(t, read, COLUMNS), "s", SERIES[4], size, "amplitude shown", "by lift angle")
         _room(panels[2], np.concatenate([shown.amplitude_deg[inside], read]), 1.0)
