@@ -265,18 +265,18 @@ def test_an_angle_is_linear_in_that_of_the_holder() -> None:
     """Both stand at their start angles at once; a rack at the start of its way."""
     pinion, free, rack, wheel = bonds(TRAIN, rides(TRAIN))
     assert (free.to, wheel.to, pinion.to, rack.to) == (1, 3, 3, 3)
-    assert (free.ratio, free.phase, free.told, free.shift) == (1.0, 0.0, 1.0, 0.0)
-    assert (pinion.ratio, pinion.told) == (-4.0, -4.0) and (rack.ratio, rack.told) == (0.25, 0.25)
+    assert (free.ratio, free.phase, free.given, free.shift) == (1.0, 0.0, 1.0, 0.0)
+    assert (pinion.ratio, pinion.given) == (-4.0, -4.0) and (rack.ratio, rack.given) == (0.25, 0.25)
     for bond, start in ((pinion, -0.2), (rack, 0.0)):
-        assert bond.ratio * 0.3 + bond.phase == pytest.approx(start) and bond.told * 0.3 + bond.shift == pytest.approx(start)
+        assert bond.ratio * 0.3 + bond.phase == pytest.approx(start) and bond.given * 0.3 + bond.shift == pytest.approx(start)
 
 
 def test_a_planet_turns_with_what_carries_it_besides() -> None:
-    """At -4 against its carrier it turns at -3 in the movement; `told` is what the scene says."""
+    """At -4 against its carrier it turns at -3 in the movement; `given` is what the scene says."""
     planet = Body("planet", inertia=0.5, angle=-0.2, on="wheel", geared=Geared("wheel", -4.0))
     _, bond = bonds((BIG, planet), rides((BIG, planet)))
-    assert (bond.ratio, bond.told) == (-3.0, -4.0)
-    assert bond.ratio * 0.3 + bond.phase == pytest.approx(0.1) and bond.told * 0.3 + bond.shift == pytest.approx(-0.2)
+    assert (bond.ratio, bond.given) == (-3.0, -4.0)
+    assert bond.ratio * 0.3 + bond.phase == pytest.approx(0.1) and bond.given * 0.3 + bond.shift == pytest.approx(-0.2)
 
 
 def test_each_feels_all_that_is_geared_to_it() -> None:

@@ -75,12 +75,9 @@ class Coaxial:
 #
 # The wheel's centre O is the origin, the lever's pivot P stands above it, the balance's centre B to the right; the wheel turns
 # clockwise. The locking corners stand on the tip circle where its tangents from P touch, one and a half pitches apart: the
-# first
-# to the left of P, the second to the right. A positive lever angle puts the first stone deep. Two circles that overlap give
-# each
-# impulse: the tips of the large wheel and the roller stone's about B, the tips of the small wheel and the lever stone's about
-# P.
-# Angles in degrees, counter-clockwise from +x; millimetres.
+# first to the left of P, the second to the right. A positive lever angle puts the first stone deep. Two circles that overlap
+# give each impulse: the tips of the large wheel and the roller stone's about B, the tips of the small wheel and the lever
+# stone's about P. Angles in degrees, counter-clockwise from +x; millimetres.
 
 TEETH = 8
 PITCH = 360.0 / TEETH
@@ -185,8 +182,7 @@ def wheel(points: Points) -> list[Loop]:
 # Where do the stones of a co-axial escapement stand, and what are their outlines?
 #
 # Three on the lever (two LOCKING_STONES, one IMPULSE_STONE) and one on the roller (IMPULSE_STONE): prisms with two rounded
-# edges
-# in their slots. In the frame of the part that holds them, millimetres.
+# edges in their slots. In the frame of the part that holds them, millimetres.
 
 LOCKING_WIDTH, LOCKING_LENGTH = 0.30, 0.62
 LEVER_WIDTH, LEVER_LENGTH = 0.17, 0.52
@@ -224,9 +220,6 @@ def roller_stone(points: Points) -> Stone:
     width = ROLLER_WIDTH * s
     tip = polar(points.stone_reach, bearing)
     return Stone(tip, bearing + 180.0, width, ROLLER_LENGTH * s, width * math.tan(math.radians(RELIEF)))
-
-
-STONES_OF_LEVER = (FIRST, SECOND)
 
 
 # What are the outlines of the fork and of the guard pin of a co-axial escapement's lever?
@@ -393,9 +386,8 @@ def banking(points: Points) -> list[Loop]:
 # What are the outlines of a co-axial escapement's balance?
 #
 # The table (TABLE) carries the stone of the direct impulse (IMPULSE_STONE) and the D-shaped unlocking pin (PIN); in another
-# plane
-# the safety roller with its crescent (SAFETY); the balance's RIM is drawn only. In the balance's own frame, millimetres: at
-# angle 0 the pin points at the lever.
+# plane the safety roller with its crescent (SAFETY); the balance's RIM is drawn only. In the balance's own frame, millimetres:
+# at angle 0 the pin points at the lever.
 
 TABLE_RADIUS, STAFF_RADIUS = 0.93, 0.16
 CRESCENT_EDGE = 0.02

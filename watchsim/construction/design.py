@@ -24,8 +24,8 @@ from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Any
 
-from watchsim.drawing.drawing import Drawing
-from watchsim.drawing.read import SNAP, read_data
+from watchsim.drawing.drawing import SNAP, Drawing
+from watchsim.drawing.read import read_data
 from watchsim.drawing.write import Sheet
 
 _KEY = "dimension"

@@ -67,8 +67,7 @@ class Detent:
 # The wheel's centre O is the origin and it turns clockwise; the balance's centre B stands above, and turns counter-clockwise
 # while it unlocks and takes its impulse. A tooth is locked one and a half pitches beyond the line OB; the detent's pivot P lies
 # on the tangent of the tip circle there, so that locking pushes through P, and draw alone turns the detent to its bank.
-# Positive
-# detent angles are counter-clockwise, into the wheel: it unlocks to negative ones. Degrees and millimetres.
+# Positive detent angles are counter-clockwise, into the wheel: it unlocks to negative ones. Degrees and millimetres.
 
 
 def sine(degrees: float) -> float:

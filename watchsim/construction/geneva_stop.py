@@ -76,8 +76,7 @@ def conflicts(values: GenevaStop) -> Iterator[Conflict]:
 # What is the outline of the Maltese cross?
 #
 # That of a Geneva drive's wheel, but one of the arms has no hollow: its end is round about the cross's own axis, and the disc
-# on
-# the arbor cannot pass.
+# on the arbor cannot pass.
 
 
 def cross(drive: Geneva) -> list[Loop]:

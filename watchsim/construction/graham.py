@@ -53,8 +53,7 @@ class Graham:
 # Where do the corners of the pallets lie, and where does a tooth rest on them?
 #
 # The wheel's axis is the origin, the pendulum's pivot lies above it where the tangents at the two lockings meet; the wheel
-# turns
-# clockwise. The pendulum's angle is positive with the entry pallet, on the left, deep in the wheel. Pallets are in the
+# turns clockwise. The pendulum's angle is positive with the entry pallet, on the left, deep in the wheel. Pallets are in the
 # pendulum's frame, that is about its pivot. With the pendulum at +unlocked a tooth leaves the entry pallet's locking face, at
 # -released its impulse face; the exit pallet is worked at the opposite angles. Millimetres, degrees.
 

@@ -51,8 +51,7 @@ class Grasshopper:
 #     2 arccos((R² + d² - l²) / (2 R d))
 #
 # One pallet takes over from the other at +release and at -release, where this must be a whole number of pitches, one more at
-# the
-# first than at the second: two equations for h and l. Wheel's axis at the origin, clockwise; millimetres, degrees.
+# the first than at the second: two equations for h and l. Wheel's axis at the origin, clockwise; millimetres, degrees.
 
 ENTRY, EXIT = 1, -1
 NEAREST, FURTHEST = 0.01, 5.0  # of the frame's pivot from the pendulum's axis, by the wheel's radius
@@ -139,8 +138,7 @@ def _pivot(values: Grasshopper, arm: float, swing: float) -> Point:
 # What are the outlines of the wheel, the pallets and the pendulum of a grasshopper escapement?
 #
 # The nibs' faces are at right angles to their pallets: what a tooth presses there runs through the pivot, and friction keeps
-# its
-# point from sliding. Lengths on a pallet are shares of a pitch, so that it clears the teeth before and behind.
+# its point from sliding. Lengths on a pallet are shares of a pitch, so that it clears the teeth before and behind.
 
 LAND, BACK, FRONT = 0.05, 0.53, 0.2  # of a pitch: the flat of a point, its back, and by how much the front is undercut
 NIB, FOOT = 0.22, 0.57  # length of a nib inside the circle of the points, and to where it joins its arm

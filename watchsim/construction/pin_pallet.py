@@ -37,8 +37,7 @@ from watchsim.geometry.primitives import Point
 # Which numbers does the designer of a pin-pallet lever escapement choose?
 #
 # A Roskopf pocket watch's size. Angles of lock, run and lift are at the lever's pivot, of the drop at the wheel's, lift angle
-# and
-# horn at the balance's.
+# and horn at the balance's.
 
 PLAYTNER, USUAL = "as in a Swiss lever, Playtner 1910", "usual in pin-lever watches"
 
@@ -363,8 +362,7 @@ def _roller(values: PinPallet, design: PinLever) -> Iterator[Conflict]:
 # What is the outline of a pin-pallet lever?
 #
 # Two round pins (layer PALLETS) stand on the arms of a body with hub and stem (ARMS); fork (FORK) and dart (DART) are those of
-# a
-# Swiss lever. In the lever's frame, pivot at the origin, balance above; millimetres.
+# a Swiss lever. In the lever's frame, pivot at the origin, balance above; millimetres.
 
 BOSS = 2.0  # half the breadth of an arm round its pin, in radii of the pin
 ROOT = 0.75  # half the breadth of an arm at the hub, of the hub's radius

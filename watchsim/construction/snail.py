@@ -39,9 +39,8 @@ class Snail:
 # How high are the steps of a snail, and where do they stand?
 #
 # The snail's axis is the origin, the rack's lies to the right at the distance d. With the tail, of length l, at the angle ψ
-# from
-# the line of centres its pin is s = √(d² + l² - 2 d l cos ψ) from the snail's axis. At step n the rack has fallen by n teeth,
-# so
+# from the line of centres its pin is s = √(d² + l² - 2 d l cos ψ) from the snail's axis. At step n the rack has fallen by n
+# teeth, so
 #
 #     r_n = s(ψ₀ - n tooth) - pin_radius
 #

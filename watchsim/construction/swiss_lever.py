@@ -37,8 +37,7 @@ from watchsim.geometry.primitives import Edge, Line, Point
 # Which numbers does the designer of a Swiss lever escapement choose?
 #
 # Angles of lock, run, lift and draw are at the lever's pivot and locking corner, of tooth and drop at the wheel's, lift angle
-# and
-# horn at the balance's. Playtner: H. R. Playtner, An Analysis of the Lever Escapement (1910).
+# and horn at the balance's. Playtner: H. R. Playtner, An Analysis of the Lever Escapement (1910).
 
 PLAYTNER, USUAL = "Playtner 1910", "usual in wristwatches"
 ESTIMATE = "estimate: not published for a watch"
@@ -86,8 +85,7 @@ class SwissLever:
 # Which of the draughtsman's numbers follow from the chosen dimensions?
 #
 # The lift on the tooth decides how far the heel stands out, the lift angle how far the jewel stands from the balance, the
-# freedom
-# of the guard how far the dart reaches.
+# freedom of the guard how far the dart reaches.
 
 FARTHEST = 0.45  # of the centre distance, where the jewel's flat can stand
 FINE = 1e-13  # of the jewel's distance
@@ -261,9 +259,8 @@ def _outside_jewel(design: Swiss, point: Point) -> float:
 # How much of the drop is left once unlocking has drawn the wheel back?
 #
 # A tooth has dropped on one stone, the tooth before it has just left the other. While the lever unlocks, the locking face
-# pushes
-# the wheel back (the recoil that its draw asks for), and the other stone comes in behind the tooth that it let off. What the
-# wheel could still be turned back before the two meet is what is left of the drop; where nothing is left, the lever cannot
+# pushes the wheel back (the recoil that its draw asks for), and the other stone comes in behind the tooth that it let off. What
+# the wheel could still be turned back before the two meet is what is left of the drop; where nothing is left, the lever cannot
 # unlock.
 
 PARTS = 40  # of an edge

@@ -42,10 +42,8 @@ class Verge:
 # Which places follow from the dimensions of a verge escapement?
 #
 # The verge stands in the origin, seen along its axis; the crown wheel's axis points down, so that its near side runs to the
-# right
-# below the verge and its far side to the left, each as a straight rack. A tooth tip at depth h pushes a flag, whose face lies
-# in
-# a plane through the axis, from one side to the other until the flag's edge lets it go. Millimetres, angles in radians.
+# right below the verge and its far side to the left, each as a straight rack. A tooth tip at depth h pushes a flag, whose face
+# lies in a plane through the axis, from one side to the other until the flag's edge lets it go. Millimetres, angles in radians.
 
 
 def pitch(values: Verge) -> float:

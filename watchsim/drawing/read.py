@@ -15,13 +15,12 @@ from pathlib import Path
 
 from watchsim.drawing.chaining import chain
 from watchsim.drawing.circles import facets
-from watchsim.drawing.drawing import Drawing
+from watchsim.drawing.drawing import SNAP, Drawing
 from watchsim.drawing.dxf import read_dxf
 from watchsim.drawing.findings import Content, Facts, Finding
 from watchsim.geometry.loops import Loop, extents
 from watchsim.units import metric
 
-SNAP = 1e-6
 FIT = 1e-7
 LARGEST_FILE = 75_000_000  # bytes; to take it apart needs thirteen times as much memory
 SMALLEST = 20.0  # times the snap: the smallest drawing that is believed

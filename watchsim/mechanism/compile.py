@@ -97,13 +97,13 @@ class _Targets:
 
     def ratio(self, name: str) -> float:
         """How far the body goes, as the scene gives it, for one unit of the coordinate."""
-        return self.bonds[name].told
+        return self.bonds[name].given
 
     def place(self, name: str, value: float, against: str | None = None) -> float:
         """The coordinate, or the difference of the two, at which the scene gives the body this angle or travel."""
         bond = self.bonds[name]
         away = self._offset(against) if against is not None else 0.0
-        return (value - bond.shift) / bond.told + self._offset(self._holder(name).name) - away
+        return (value - bond.shift) / bond.given + self._offset(self._holder(name).name) - away
 
     def _offset(self, name: str) -> float:
         """From an angle as the scene gives it to the coordinate, or to the difference of the two."""
@@ -316,7 +316,7 @@ def _compiled(scene: Scene, prefilter: bool) -> Compiled:
     parts = (bodies, *forced.parts, primitives, contacts, laws, pairs, near)
     model = Model(*(frozen(part) for part in parts))
     own = [(body.name, bond) for body, bond in zip(scene.bodies, bound, strict=True) if body.geared and body.name not in named]
-    geared = tuple((int(bodies[bond.to].first), bond.told, bond.shift) for _, bond in own)
+    geared = tuple((int(bodies[bond.to].first), bond.given, bond.shift) for _, bond in own)
     slices |= {name: slice(len(q) + k, len(q) + k + 1) for k, (name, _) in enumerate(own)}
     return Compiled(
         model, layers, owners, slices, size, frozen(q), frozen(u), forced.fastest, _against(riding, bodies, bound), geared

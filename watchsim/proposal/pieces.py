@@ -20,10 +20,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.drawing.circles import circle_of
-from watchsim.drawing.drawing import Drawing
+from watchsim.drawing.drawing import SNAP, Drawing
 from watchsim.drawing.findings import Content, Inserted, Stroke
 from watchsim.drawing.material import MARKS, last_word
-from watchsim.drawing.read import FIT, SNAP, assembled, read_content
+from watchsim.drawing.read import FIT, assembled, read_content
 from watchsim.geometry.loops import Loop, extents, winding
 from watchsim.geometry.primitives import Arc, Point
 from watchsim.geometry.solids import area, section

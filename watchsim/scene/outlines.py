@@ -131,8 +131,7 @@ def _turn(a: Floats, b: Floats, c: Floats) -> Floats:
 # On which side of an open chain is the material?
 #
 # An open chain has no inside, so it can only be touched where the scene says what is behind it: `material` of a body, for all
-# its
-# open chains or layer by layer. A point in the material says it however the chain was drawn.
+# its open chains or layer by layer. A point in the material says it however the chain was drawn.
 
 SIDES = ("left", "right")
 ADVICE = 'material = "left" (or "right", seen along the drawn direction; or a point behind it, ["0 mm", "-1 mm"])'
@@ -346,8 +345,8 @@ def _open(table: Table, folder: Path, made: Made) -> Drawing | None:
         table.fault("drawing", f"{what} name of a drawing is needed here: {there}", with_value=True)
         return None
     snap = table.quantity("snap")
-    told = table.text("units")
-    units = told if isinstance(table.mapping.get("units"), str) else None
+    stated = table.text("units")
+    units = stated if isinstance(table.mapping.get("units"), str) else None
     if name in made and not math.isnan(snap):
         return drawing_of(made[name], name, snap)
     if not path.is_file() or math.isnan(snap):

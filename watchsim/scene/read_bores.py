@@ -162,7 +162,7 @@ def _forgotten(table: Table, outlines: Outlines, plate: Solid, elsewhere: Set[st
     missing = [bore for bore, lie in found if lie.taken]
     if missing:
         how = "counted as material of" if any(bore in plate.loops for bore in missing) else "not taken out of"
-        message = f"{how} {_plate(plate)}: {told(missing)} lying in it"
+        message = f"{how} {_plate(plate)}: {count_of(missing)} lying in it"
         yield _finding("notice", message, _line_to_add(table, plate, missing), missing[0])
 
 
@@ -184,7 +184,9 @@ def uniform_notices(table: Table, outlines: Outlines, weight: Weight, elsewhere:
     if not missing:
         return ()
     how = "one more part" if any(bore in plate.loops for bore in missing) else "filled"
-    message = f"{_body(table)}: its mass is spread evenly over its outlines, and {told(missing)} lying in them count as {how}"
+    message = (
+        f"{_body(table)}: its mass is spread evenly over its outlines, and {count_of(missing)} lying in them count as {how}"
+    )
     fix = "Give solids with bores instead of mass, or the inertia as well."
     return (_finding("notice", message, fix, missing[0]),)
 
@@ -199,7 +201,7 @@ def _unnamed(outlines: Outlines, plate: Solid, elsewhere: Set[str]) -> list[tupl
     return list(zip(bores, lies(bores, _material(plate, left)), strict=True))
 
 
-def told(bores: Sequence[Loop]) -> str:
+def count_of(bores: Sequence[Loop]) -> str:
     """ "3 bores of LEVER_BORE"."""
     layers = ", ".join(dict.fromkeys(bore.layer for bore in bores))
     return f"{len(bores)} {'bore' if len(bores) == 1 else 'bores'} of {layers}"

@@ -215,8 +215,7 @@ def _key(rigid: list[tuple[Table, Gear]], name: str) -> str:
 # What does a mainspring do to a body that it drives through a train?
 #
 # One turn of the barrel turns the body `ratio` times. Its torque arrives divided by that, less what the train loses; the
-# inertia
-# of a wheel between them counts divided by the square of its own ratio to the body.
+# inertia of a wheel between them counts divided by the square of its own ratio to the body.
 
 BARREL = "barrel"
 KEYS = ("ratio", "efficiency", "run_down", "train")  # of [[torques]], with over = "barrel" only

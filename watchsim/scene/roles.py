@@ -20,8 +20,7 @@ from watchsim.scene.trains import Ride, Weighed, felt, rides, weigh
 # What swings about which rest position, by springs and by gravity, and how fast?
 #
 # A body swings if a spring pulls it back, or if it is pivoted, hangs with its centre of mass beside the pivot in gravity, and
-# is
-# not driven. Stiffnesses of springs and of gravity add; inertia counts with all that the body carries.
+# is not driven. Stiffnesses of springs and of gravity add; inertia counts with all that the body carries.
 
 Loads = tuple[tuple[Ride, ...], tuple[Weighed, ...], tuple[float, ...]]
 

@@ -246,13 +246,13 @@ class Bond(NamedTuple):
 
     to            the number of the body whose coordinate that is; itself where it has one of its own
     ratio, phase  its angle in the movement, or its travel, is ratio q + phase
-    told, shift   as the scene gives both coordinates, the own one is `told` times that of `to`, plus `shift`
+    given, shift  as the scene gives both coordinates, the own one is `given` times that of `to`, plus `shift`
     """
 
     to: int
     ratio: float = 1.0
     phase: float = 0.0
-    told: float = 1.0
+    given: float = 1.0
     shift: float = 0.0
 
 
@@ -265,11 +265,11 @@ def bonds(bodies: tuple[Body, ...], hung: tuple[Ride, ...]) -> tuple[Bond, ...]:
     )
 
 
-def _bond(bodies: tuple[Body, ...], hung: tuple[Ride, ...], i: int, to: int, told: float) -> Bond:
-    ratio = told + 1.0 if hung[i].turns_with == to else told
+def _bond(bodies: tuple[Body, ...], hung: tuple[Ride, ...], i: int, to: int, given: float) -> Bond:
+    ratio = given + 1.0 if hung[i].turns_with == to else given
     start, begin = (hung[k].start if bodies[k].motion == "pivot" else 0.0 for k in (i, to))
     own, other = (bodies[k].angle if bodies[k].motion == "pivot" else 0.0 for k in (i, to))
-    return Bond(to, ratio, start - ratio * begin, told, own - told * other)
+    return Bond(to, ratio, start - ratio * begin, given, own - given * other)
 
 
 def felt(bodies: tuple[Body, ...], hung: tuple[Ride, ...], weighed: tuple[Weighed, ...]) -> tuple[float, ...]:
@@ -281,7 +281,7 @@ def felt(bodies: tuple[Body, ...], hung: tuple[Ride, ...], weighed: tuple[Weighe
     whole = [0.0] * len(bodies)
     for mass, bond in zip(own, bound, strict=True):
         whole[bond.to] += bond.ratio**2 * mass
-    return tuple(whole[bond.to] / bond.told**2 for bond in bound)
+    return tuple(whole[bond.to] / bond.given**2 for bond in bound)
 
 
 def ungeared(scene: Scene) -> Scene:

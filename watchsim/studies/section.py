@@ -84,8 +84,8 @@ def parts_of(scene: Scene, compiled: Compiled) -> Parts | None:
         tuple({int(model.bodies[bound[names.index(name)].to].first) for name in train(scene, found.wheel)})
         if found.wheel
         else (),
-        drive_direction(scene, found.wheel) * math.copysign(1.0, bond.told) if found.wheel and bond else 1.0,
-        part / abs(bond.told) if part and bond else None,
+        drive_direction(scene, found.wheel) * math.copysign(1.0, bond.given) if found.wheel and bond else 1.0,
+        part / abs(bond.given) if part and bond else None,
         1.0 / hertz,
         1.0 / (nominal_frequency(scene) or hertz),
         found.lever is not None,
