@@ -14,8 +14,6 @@ from watchsim.drawing.write import Sheet
 
 @dataclass(frozen=True)
 class Cam:
-    """The dimensions with their defaults, each in the unit that its declaration names."""
-
     radius: float = dim(5.0, "mm", 0.2, 200.0, "of the cam, a disc", CHOSEN)
     eccentricity: float = dim(1.5, "mm", 0.0, 150.0, "of the disc's middle from the axis: half of the lift", CHOSEN)
     roller_radius: float = dim(1.0, "mm", 0.05, 50.0, "of the round end of the follower", CHOSEN)
@@ -96,7 +94,6 @@ def draw(values: Cam) -> dict[str, Sheet]:
 
 
 def conflicts(values: Cam) -> Iterator[Conflict]:
-    """What cannot be drawn or cannot work."""
     if values.eccentricity >= 0.8 * values.radius:
         yield Conflict("eccentricity", f"must be below {0.8 * values.radius:.4g} mm, else the axis has no room in the disc")
     elif values.speed >= leaves_at(values):

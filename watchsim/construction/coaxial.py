@@ -485,7 +485,6 @@ FREE = 0.75  # degrees of the wheel by which a waiting tooth must stand outside 
 
 
 def conflicts(values: Coaxial) -> Iterator[Conflict]:
-    """Every conflict between dimensions, each named by the one to change first."""
     points = Points(values)
     holds = math.degrees(math.atan(values.friction))
     if holds >= values.draw:

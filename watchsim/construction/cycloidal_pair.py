@@ -19,8 +19,6 @@ HALF = "half a pitch"
 
 @dataclass(frozen=True)
 class CycloidalPair:
-    """The dimensions with their defaults, each in the unit that its declaration names."""
-
     pinion_teeth: int = dim(10, "", 6, 30, "leaves of the driven pinion", "watch trains: 6 to 12")
     wheel_teeth: int = dim(80, "", 20, 150, "teeth of the driving wheel", "watch trains: 6 to 10 times the leaves")
     module: float = dim(0.12, "mm", 0.02, 10.0, "pitch diameter by number of teeth", "watch trains: 0.08 mm to 0.2 mm")
@@ -133,16 +131,20 @@ class Pinion:
 
 
 def wheel_outline(wheel: Wheel) -> list[Loop]:
-    """The toothed contour and the bore."""
-    return _outline(wheel, [*_radial(wheel, wheel.half_tooth), *_addendum(wheel)], wheel.values.wheel_teeth)
+    """The toothed contour and the bore; the addendum of arcs evenly spread over the angle of rolling."""
+    arcs = wheel.values.arcs
+    step = wheel.last_roll / (2 * arcs)
+    points = [wheel.epicycloid(i * step) for i in range(2 * arcs + 1)]
+    flank = [polar(radius, math.degrees(angle)) for radius, angle in points]
+    addendum = [arc_through(*flank[i : i + 3]) for i in range(0, 2 * arcs, 2)]
+    return _outline(wheel, [_radial(wheel, wheel.half_tooth), *addendum], wheel.values.wheel_teeth)
 
 
 def pinion_outline(pinion: Pinion) -> list[Loop]:
     """The leaves and the bore."""
-    right = _radial(pinion, pinion.half_leaf)
-    centre, _radius = pinion.rounding
-    right.append(arc_between(right[0].end, (pinion.tip_radius, 0.0), centre, True))
-    return _outline(pinion, right, pinion.values.pinion_teeth)
+    flank = _radial(pinion, pinion.half_leaf)
+    rounding = arc_between(flank.end, (pinion.tip_radius, 0.0), pinion.rounding[0], True)
+    return _outline(pinion, [flank, rounding], pinion.values.pinion_teeth)
 
 
 def _outline(gear: Wheel | Pinion, right: list[Edge], teeth: int) -> list[Loop]:
@@ -155,21 +157,10 @@ def _outline(gear: Wheel | Pinion, right: list[Edge], teeth: int) -> list[Loop]:
     return gear_outline(LAYER, [*right, *tip, *left, floor], teeth, gear.floor_radius)
 
 
-def _radial(gear: Wheel | Pinion, half: float) -> list[Edge]:
+def _radial(gear: Wheel | Pinion, half: float) -> Line:
     """The right flank up to the pitch circle."""
     foot = -math.degrees(half)
-    return [Line(*polar(gear.floor_radius, foot), *polar(gear.pitch_radius, foot))]
-
-
-def _addendum(wheel: Wheel) -> list[Edge]:
-    """The right flank above the pitch circle: arcs evenly spread over the angle of rolling."""
-    step = wheel.last_roll / (2 * wheel.values.arcs)
-    points = [_flat(wheel.epicycloid(i * step)) for i in range(2 * wheel.values.arcs + 1)]
-    return [arc_through(*points[i : i + 3]) for i in range(0, 2 * wheel.values.arcs, 2)]
-
-
-def _flat(place: Point) -> Point:
-    return polar(place[0], math.degrees(place[1]))
+    return Line(*polar(gear.floor_radius, foot), *polar(gear.pitch_radius, foot))
 
 
 def tip_left(wheel: Wheel) -> float:
@@ -203,7 +194,6 @@ LEAST_TIP, LEAST_PLAY, LEAST_ROOM = 0.02, 0.02, 0.05  # modules
 
 
 def conflicts(values: CycloidalPair) -> Iterator[Conflict]:
-    """What cannot be drawn or cannot work."""
     wheel, pinion, module = Wheel(values), Pinion(values), values.module
     if tip_left(wheel) < LEAST_TIP * module:
         yield Conflict(

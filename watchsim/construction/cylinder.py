@@ -27,8 +27,6 @@ USUAL = "usual in cylinder watches"
 
 @dataclass(frozen=True)
 class Cylinder:
-    """The dimensions with their defaults, each in the unit that its declaration names."""
-
     teeth: int = dim(15, "", 10, 20, "of the escape wheel", HEADRICK)
     centre_distance: float = dim(4.5, "mm", 1.0, 20.0, "of wheel and balance", CHOSEN)
     tooth_width: float = dim(10.0, "°", 4.0, 15.0, "of a tooth's impulse face, at the wheel's centre", HEADRICK)
@@ -275,7 +273,6 @@ SPARE = 5.0  # degrees of swing
 
 
 def conflicts(values: Cylinder) -> Iterator[Conflict]:
-    """Every conflict between dimensions, each named by the one to change first."""
     half = 180.0 / values.teeth
     if values.tooth_width + values.drop >= half:
         most = half - values.drop

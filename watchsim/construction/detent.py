@@ -112,13 +112,9 @@ class Points:
         """From P to the tip of the passing spring: it slips off the discharging stone after the travel."""
         self.pin_centre = self.discharge - values.discharge_radius
 
-    def in_detent(self, point: Point, angle: float = 0.0) -> Point:
-        """A place of the movement in the detent's own frame, with the detent at `angle` degrees."""
-        return turned((point[0] - self.pivot[0], point[1] - self.pivot[1]), -angle)
-
     def locking_corner(self) -> Point:
         """Of the locking stone, in the detent's frame: on the tip circle when the tooth is let go."""
-        return self.in_detent(self.locking, -self.values.lock)
+        return turned((self.locking[0] - self.pivot[0], self.locking[1] - self.pivot[1]), self.values.lock)
 
     def face_direction(self) -> float:
         """Direction of the locking face away from the wheel, in the detent's frame."""
@@ -183,15 +179,10 @@ def roller(points: Points) -> list[Loop]:
         circle("TABLE", (0.0, 0.0), TABLE * points.stone_reach),
         circle("TABLE", (0.0, 0.0), STAFF * s, hole=True),
         stone.loop("IMPULSE_STONE", EDGE * s),
-        circle("ROLLER", (0.0, 0.0), discharging_roller(points)),
+        circle("ROLLER", (0.0, 0.0), points.pin_centre - 0.2 * values.discharge_radius),  # the stone stands out of it
         circle("ROLLER", (0.0, 0.0), STAFF * s, hole=True),
         circle("DISCHARGE", pin, values.discharge_radius),
     ]
-
-
-def discharging_roller(points: Points) -> float:
-    """Radius of the roller that holds the discharging stone: part of the stone stands out of it."""
-    return points.pin_centre - 0.2 * points.values.discharge_radius
 
 
 def _beside(points: Points, x: float, y: float) -> Point:
@@ -338,7 +329,6 @@ FREE = 0.5  # degrees of the wheel by which a waiting tooth must stand outside t
 
 
 def conflicts(values: Detent) -> Iterator[Conflict]:
-    """Every conflict between dimensions, each named by the one to change first."""
     points = Points(values)
     holds = math.degrees(math.atan(values.friction))
     if holds >= values.draw:

@@ -24,8 +24,6 @@ USUAL = "usual in duplex watches"
 
 @dataclass(frozen=True)
 class Duplex:
-    """The dimensions with their defaults, each in the unit that its declaration names."""
-
     teeth: int = dim(15, "", 10, 16, "of the escape wheel: so many long ones that rest, so many upright ones that drive", USUAL)
     tip_radius: float = dim(6.0, "mm", 1.5, 15.0, "escape wheel, to the points of the resting teeth", CHOSEN)
     roller_ratio: float = dim(1.0 / 15.0, "", 0.04, 0.1, "radius of the roller by that of the resting teeth", ABBOTT)
@@ -197,7 +195,6 @@ SPARE = 20.0  # degrees of swing
 
 
 def conflicts(values: Duplex) -> Iterator[Conflict]:
-    """Every conflict between dimensions, each named by the one to change first."""
     points = DuplexPoints(values)
     most = points.waiting - 2.0 * points.rests - FREE
     if values.reach > most:

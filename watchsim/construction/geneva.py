@@ -16,8 +16,6 @@ from watchsim.geometry.primitives import Edge, Line
 
 @dataclass(frozen=True)
 class Geneva:
-    """The dimensions with their defaults, each in the unit that its declaration names."""
-
     slots: int = dim(4, "", 3, 16, "slots of the driven wheel", "usual: 4 to 8")
     crank: float = dim(10.0, "mm", 0.2, 200.0, "driver, from its axis to the middle of the pin", CHOSEN)
     pin_radius: float = dim(1.5, "mm", 0.02, 30.0, "of the driving pin", CHOSEN)
@@ -81,7 +79,6 @@ LEAST_RIM = 0.02  # of the wheel's radius, that must stay between slot and hollo
 
 
 def conflicts(values: Geneva) -> Iterator[Conflict]:
-    """What cannot be drawn or cannot work."""
     half, bottom, rim = slot_half(values), slot_bottom(values), wheel_radius(values)
     if bottom * math.sin(math.radians(half_pitch(values))) <= 1.05 * half or bottom <= 1.1 * half:
         yield Conflict("pin_radius", f"the slots, {2.0 * half:.4g} mm wide, would run into each other near the wheel's axis")

@@ -30,8 +30,6 @@ USUAL = "usual in watches"
 
 @dataclass(frozen=True)
 class GenevaStop:
-    """The dimensions with their defaults, each in the unit that its declaration names."""
-
     turns: int = dim(4, "", 3, 7, "of the barrel arbor between both stops; the Maltese cross has an arm more", USUAL)
     crank: float = dim(1.5, "mm", 0.2, 20.0, "finger, from the arbor's axis to the middle of its pin", CHOSEN)
     pin_radius: float = dim(0.2, "mm", 0.02, 3.0, "of the finger's pin", CHOSEN)

@@ -14,8 +14,6 @@ from watchsim.drawing.write import Sheet
 
 @dataclass(frozen=True)
 class Governor:
-    """The dimensions with their defaults, each in the unit that its declaration names."""
-
     torque: float = dim(60.0, "mN·m", 1e-3, 1e5, "of the weight on its drum", CHOSEN)
     ratio: float = dim(600.0, "", 1.0, 1e5, "turns of the fly by those of the drum", "three arbors of 8 to 9 each")
     drum_radius: float = dim(20.0, "mm", 1.0, 500.0, "of the drum", CHOSEN)
@@ -89,7 +87,6 @@ def draw(values: Governor) -> dict[str, Sheet]:
 
 
 def conflicts(values: Governor) -> Iterator[Conflict]:
-    """What cannot be drawn."""
     if values.root >= 0.9 * values.reach:
         yield Conflict("root", f"must be below {0.9 * values.reach:.4g} mm, else no vane is left")
     if values.thickness > 0.2 * values.reach:

@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import ClassVar
 
 from watchsim.construction import scene_builder as toml
 from watchsim.construction.design import CHOSEN, Conflict, Design, Impossible, dim
-from watchsim.construction.outline import along, angle_of, arc_between, around, circle, polar, polygon, turned
-from watchsim.construction.parts import bob_and_rod
+from watchsim.construction.outline import along, angle_of, arc_between, around, circle, polar, turned
+from watchsim.construction.parts import pendulum, pendulum_clock
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Edge, Line, Point
@@ -23,8 +24,6 @@ USUAL = "usual in pendulum clocks"
 
 @dataclass(frozen=True)
 class Graham:
-    """The dimensions with their defaults, each in the unit that its declaration names."""
-
     teeth: int = dim(30, "", 12, 60, "teeth of the escape wheel", USUAL)
     embraced: float = dim(7.5, "", 2.5, 14.5, "tooth spaces between the two lockings, a whole number and a half", USUAL)
     tip_radius: float = dim(20.0, "mm", 2.0, 200.0, "escape wheel, to the tips of its teeth", CHOSEN)
@@ -49,6 +48,9 @@ class Graham:
     restitution: float = dim(0.0, "", 0.0, 0.9, "coefficient of restitution, teeth on pallets", CHOSEN)
     start: float = dim(2.0, "°", 0.5, 12.0, "pendulum, from rest, where it is let go", CHOSEN)
 
+    title: ClassVar[str] = "Dead-beat escapement"
+    recoil = 0.0  # degrees by which a locking face leans from the arc about the pivot; a dimension of the recoil anchor
+
 
 # Where do the corners of the pallets lie, and where does a tooth rest on them?
 #
@@ -60,10 +62,9 @@ class Graham:
 
 @dataclass(frozen=True)
 class Anchor:
-    """The dimensions, and by how much a locking face leans from the arc about the pivot: 0 is dead-beat, more is recoil."""
+    """What follows from the dimensions."""
 
     values: Graham
-    recoil: float = 0.0
 
     @property
     def half_span(self) -> float:
@@ -109,12 +110,12 @@ class Anchor:
         """
         locking, _ = self.corners(side)
         bearing = math.degrees(math.atan2(locking[1], locking[0]))
-        return bearing - side * 90.0 + self.recoil
+        return bearing - side * 90.0 + self.values.recoil
 
     def wheel_angle(self, pendulum: float) -> float:
         """Of the wheel, with a tooth on the entry pallet's locking face; at 0 a tip is on the x axis."""
         half = self.pallet_width / 2.0
-        if self.recoil == 0.0:
+        if self.values.recoil == 0.0:
             return 90.0 + self.half_span + half
         (x, y), way = self.corners(1)[0], math.radians(self.face_direction(1) + pendulum)
         x, y = turned((x, y), pendulum)
@@ -130,27 +131,11 @@ class Anchor:
 
 # What are the outlines of the anchor and its pendulum?
 #
-# PALLETS are what the teeth meet: from the let-off corner over the impulse face to the locking face. ANCHOR holds them, ROD and
-# BOB are the pendulum; these touch nothing. In the pendulum's frame, millimetres.
+# A pallet runs from the let-off corner over the impulse face to the locking face. In the pendulum's frame, millimetres.
 
 REACH = 16.0  # degrees, at the pivot, from the corners to the foot of a pallet
 HOLD = 5.0  # degrees of it that the anchor holds
 HUB, BORE, ROD = 0.16, 0.05, 0.1  # radii, and half the width of the rod, by the radius of the wheel
-
-
-def pendulum(anchor: Anchor) -> list[Loop]:
-    """Pallets, anchor, rod and bob."""
-    values = anchor.values
-    size, half = values.tip_radius, ROD * values.tip_radius
-    low = -values.pendulum
-    return [
-        pallet(anchor, 1),
-        pallet(anchor, -1),
-        arms(anchor),
-        circle("ANCHOR", (0.0, 0.0), BORE * size, hole=True),
-        polygon("ROD", [(-half, 0.0), (-half, low), (half, low), (half, 0.0)]),
-        circle("BOB", (0.0, low), values.bob_radius),
-    ]
 
 
 def pallet(anchor: Anchor, side: int) -> Loop:
@@ -168,12 +153,12 @@ def pallet(anchor: Anchor, side: int) -> Loop:
 def _face(anchor: Anchor, side: int, foot: float) -> Edge:
     """The locking face from its corner to the foot."""
     locking, _ = anchor.corners(side)
-    if anchor.recoil == 0.0:
+    if anchor.values.recoil == 0.0:
         return arc_between(locking, polar(math.hypot(*locking), foot), (0.0, 0.0), side < 0)
     way = anchor.face_direction(side)
     turn = math.radians(foot - angle_of(locking)) % (2.0 * math.pi)
     turn = turn if side < 0 else 2.0 * math.pi - turn
-    lean = math.radians(90.0 + side * anchor.recoil)  # between the face and the radius outwards
+    lean = math.radians(90.0 + side * anchor.values.recoil)  # between the face and the radius outwards
     length = math.hypot(*locking) * math.sin(turn) / math.sin(lean - turn)
     return Line(*locking, *along(locking, way, length))
 
@@ -202,9 +187,9 @@ CLEAR = 1e-5  # degrees by which the tooth stands off the pallet at the start
 BRASS = 8400.0  # kg/m³
 
 
-def scene_text(anchor: Anchor, name: str) -> str:
+def scene_text(values: Graham) -> str:
     """The text of scene.toml: a tooth locked on the entry pallet, the pendulum about to be let go."""
-    values, title = anchor.values, f"{name}, {anchor.values.teeth} teeth"
+    anchor, title = Anchor(values), f"{values.title}, {values.teeth} teeth"
     wheel_angle = (anchor.wheel_angle(values.start) + CLEAR) % (360.0 / values.teeth)
     return toml.scene(
         toml.head(values, f"{title}, drawn to these dimensions:", title, gravity=values.gravity),
@@ -219,12 +204,7 @@ def scene_text(anchor: Anchor, name: str) -> str:
             position=toml.at(0, anchor.distance),
             angle=f"{values.start!r}°",
         ),
-        *bob_and_rod(values, BRASS, 2.0),
-        toml.torque("wheel", f"{-values.torque:.15g} mN·m"),
-        toml.q_factor("pendulum", values.q_factor),
-        toml.contacts(values, "wheel.TEETH pendulum.PALLETS"),
-        toml.run("60 s", "1e-12"),
-        toml.timegrapher(f"{values.lift!r}°"),
+        *pendulum_clock(values, "wheel.TEETH pendulum.PALLETS", BRASS, 2.0),
     )
 
 
@@ -294,9 +274,8 @@ def _window(start: float, inner: float, outer: float, half: float) -> Loop:
 LEAST_WIDTH, LEAST_GAP, MOST_SPAN = 0.2, 0.3, 80.0
 
 
-def conflicts(anchor: Anchor) -> Iterator[Conflict]:
-    """What cannot be drawn or cannot work."""
-    values = anchor.values
+def conflicts(values: Graham) -> Iterator[Conflict]:
+    anchor = Anchor(values)
     if abs(values.embraced % 1.0 - 0.5) > 1e-9:
         yield Conflict("embraced", "must be a whole number and a half, else both pallets are worked at once")
     if anchor.half_span > MOST_SPAN or anchor.half_span < 90.0 - MOST_SPAN:
@@ -317,24 +296,11 @@ def conflicts(anchor: Anchor) -> Iterator[Conflict]:
         yield Conflict("back", f"leaves {gap(values):.3g}° between two teeth; {LEAST_GAP:g}° are needed")
 
 
-def sheets(anchor: Anchor) -> dict[str, Sheet]:
-    """Wheel, and pendulum with its anchor."""
-    return {"escape_wheel": Sheet(tuple(wheel(anchor.values))), "pendulum": Sheet(tuple(pendulum(anchor)))}
-
-
 def draw(values: Graham) -> dict[str, Sheet]:
-    """Its two sheets."""
-    return sheets(Anchor(values))
+    """Wheel, and pendulum with its anchor."""
+    anchor, size = Anchor(values), values.tip_radius
+    hanging = pendulum(values, [pallet(anchor, side) for side in (1, -1)], arms(anchor), BORE * size, ROD * size)
+    return {"escape_wheel": Sheet(tuple(wheel(values))), "pendulum": Sheet(tuple(hanging))}
 
 
-def scene(values: Graham) -> str:
-    """Its scene."""
-    return scene_text(Anchor(values), "Dead-beat escapement")
-
-
-def conflicts_design(values: Graham) -> Iterator[Conflict]:
-    """What does not go together."""
-    return conflicts(Anchor(values))
-
-
-DESIGN = Design("graham", "Graham's dead-beat escapement with its pendulum", Graham, draw, scene, conflicts_design)
+DESIGN = Design("graham", "Graham's dead-beat escapement with its pendulum", Graham, draw, scene_text, conflicts)

@@ -17,8 +17,6 @@ from watchsim.geometry.primitives import Point
 
 @dataclass(frozen=True)
 class Grasshopper:
-    """The dimensions with their defaults, each in the unit that its declaration names."""
-
     teeth: int = dim(60, "", 24, 180, "of the wheel", "Harrison: 120 at larger arcs")
     tip_radius: float = dim(30.0, "mm", 3.0, 300.0, "of the wheel, to the points of its teeth", CHOSEN)
     height: float = dim(2.0, "mm", 0.1, 20.0, "of the teeth", CHOSEN)
@@ -305,7 +303,6 @@ def cuts_in(at: Points, side: int) -> float:
 
 
 def conflicts(values: Grasshopper) -> Iterator[Conflict]:
-    """What cannot be drawn or cannot work."""
     pitch = 360.0 / values.teeth
     between, unit = (values.span + 0.5) * pitch, math.radians(pitch) * values.tip_radius
     if not NARROWEST <= between <= WIDEST:

@@ -16,8 +16,6 @@ from watchsim.geometry.primitives import Edge, Line, Point
 
 @dataclass(frozen=True)
 class InvolutePair:
-    """The dimensions with their defaults, each in the unit that its declaration names."""
-
     pinion_teeth: int = dim(20, "", 6, 60, "teeth of the driven pinion", CHOSEN)
     wheel_teeth: int = dim(40, "", 8, 150, "teeth of the driving wheel", CHOSEN)
     module: float = dim(0.2, "mm", 0.02, 10.0, "pitch diameter by number of teeth", "small gears: 0.1 mm to 0.3 mm")
@@ -93,12 +91,7 @@ def pair(values: InvolutePair) -> tuple[Gear, Gear]:
 
 
 def outline(gear: Gear) -> list[Loop]:
-    """The toothed contour and the bore."""
-    return gear_outline(LAYER, _tooth(gear), gear.teeth, gear.floor_radius)
-
-
-def _tooth(gear: Gear) -> list[Edge]:
-    """From the foot of a tooth's right flank over its tip to the foot of the next tooth's, counter-clockwise."""
+    """The toothed contour, each tooth from the foot of its right flank to the foot of the next one, and the bore."""
     foot = math.degrees(gear.half_tooth(gear.flank_start))
     right = _flank(gear)
     if gear.base_radius > gear.floor_radius:
@@ -107,7 +100,7 @@ def _tooth(gear: Gear) -> list[Edge]:
     tip = arc_between(right[-1].end, left[0].start, (0.0, 0.0), True)
     next_foot = 360.0 / gear.teeth - foot
     floor = arc_between(polar(gear.floor_radius, foot), polar(gear.floor_radius, next_foot), (0.0, 0.0), True)
-    return [*right, tip, *left, floor]
+    return gear_outline(LAYER, [*right, tip, *left, floor], gear.teeth, gear.floor_radius)
 
 
 def _flank(gear: Gear) -> list[Edge]:
@@ -127,12 +120,6 @@ def _at(gear: Gear, rolled: float) -> Point:
     """The point of the right flank at that rolling angle."""
     radius = gear.base_radius * math.sqrt(1.0 + rolled * rolled)
     return polar(radius, -math.degrees(gear.half_tooth(radius)))
-
-
-def floor_left(gear: Gear) -> float:
-    """Degrees of floor between two teeth."""
-    foot = gear.half_tooth(gear.flank_start)
-    return math.degrees(2.0 * math.pi / gear.teeth - 2.0 * foot)
 
 
 def departure(gear: Gear) -> float:
@@ -192,13 +179,12 @@ LEAST_TIP, LEAST_FLOOR = 0.1, 0.05  # modules; degrees
 
 
 def conflicts(values: InvolutePair) -> Iterator[Conflict]:
-    """What cannot be drawn or cannot work."""
     gears = dict(zip(("pinion", "wheel"), pair(values), strict=True))
     for name, gear in gears.items():
         tip = 2.0 * gear.half_tooth(gear.tip_radius) * gear.tip_radius / values.module
         if tip < LEAST_TIP:
             yield Conflict("addendum", f"makes the teeth of the {name} pointed: {tip:.3g} modules are left at the tip")
-        if floor_left(gear) < LEAST_FLOOR:
+        if math.degrees(math.tau / gear.teeth - 2.0 * gear.half_tooth(gear.flank_start)) < LEAST_FLOOR:
             yield Conflict("shift", f"leaves no gap between the feet of the {name}'s teeth")
     for (name, gear), other in zip(gears.items(), reversed(gears.values()), strict=True):
         start = math.sqrt(gear.flank_start**2 - gear.base_radius**2)

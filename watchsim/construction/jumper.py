@@ -16,8 +16,6 @@ from watchsim.geometry.primitives import Point
 
 @dataclass(frozen=True)
 class Jumper:
-    """The dimensions with their defaults, each in the unit that its declaration names."""
-
     teeth: int = dim(7, "", 5, 16, "teeth of the star", "7: days of the week")
     tip_radius: float = dim(4.0, "mm", 0.5, 20.0, "of the star, to the points of its teeth", CHOSEN)
     depth: float = dim(1.2, "mm", 0.05, 8.0, "of the teeth, from point to root", CHOSEN)
@@ -88,7 +86,6 @@ NARROWEST = 15.0  # degrees between a flank and the radius: the beak would jam
 
 
 def conflicts(values: Jumper) -> Iterator[Conflict]:
-    """What cannot be drawn or cannot work."""
     deepest = (1.0 - LEAST_ROOT) * values.tip_radius
     if values.depth > deepest:
         yield Conflict("depth", f"leaves a root radius of {root_radius(values):.3g} mm; at most {deepest:.3g} mm fit")

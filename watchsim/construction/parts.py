@@ -16,6 +16,7 @@ from watchsim.construction.outline import (
     circle,
     fillet_chain,
     polar,
+    polygon,
     rounded,
     to_circle,
     turned,
@@ -256,15 +257,31 @@ def gear_pair_scene(values: Values, heading: str, title: str, distance: float) -
     )
 
 
-def bob_and_rod(values: Values, bob: float, thickness: float) -> tuple[str, str]:
-    """The solids of a pendulum, its bob so thick that it has its mass: density of the bob, kg/m³; thickness of the rod, mm."""
+# What do pendulum clocks share: the pendulum's outlines beside its pallets, and the end of the scene?
+
+ROD_DENSITY = 7850.0  # kg/m³, steel
+
+
+def pendulum(values: Values, pallets: Sequence[Loop], anchor: Loop, bore: float, half: float) -> list[Loop]:
+    """PALLETS are what the teeth meet; ANCHOR, ROD and BOB touch nothing. Radius of the bore, half the width of the rod."""
+    low = -values.pendulum
+    hole = circle("ANCHOR", (0.0, 0.0), bore, hole=True)
+    rod = polygon("ROD", [(-half, 0.0), (-half, low), (half, low), (half, 0.0)])
+    return [*pallets, anchor, hole, rod, circle("BOB", (0.0, low), values.bob_radius)]
+
+
+def pendulum_clock(values: Values, touching: str, bob: float, thickness: float) -> tuple[str, ...]:
+    """The tables after wheel and pendulum, whose bob is so thick that it has its mass: density of the bob, kg/m³; thickness of
+    the rod, mm."""
     thick = values.bob_mass / (bob * (math.pi * values.bob_radius**2)) * 1e9
     mass = toml.Noted(f"{thick!r} mm", f"makes its mass {values.bob_mass:.6g} kg", 7)
     solids = "[[bodies.pendulum.solids]]"
     return (
         toml.table(solids, layer="BOB", thickness=mass, density=f"{bob:g} kg/m³"),
         toml.table(solids, layer="ROD", thickness=f"{thickness:g} mm", density=f"{ROD_DENSITY:g} kg/m³"),
+        toml.torque("wheel", f"{-values.torque:.15g} mN·m"),
+        toml.q_factor("pendulum", values.q_factor),
+        toml.contacts(values, touching),
+        toml.run("60 s", "1e-12"),
+        toml.timegrapher(f"{values.lift!r}°"),
     )
-
-
-ROD_DENSITY = 7850.0  # kg/m³, steel

@@ -44,8 +44,6 @@ PLAYTNER, USUAL = "as in a Swiss lever, Playtner 1910", "usual in pin-lever watc
 
 @dataclass(frozen=True)
 class PinPallet:
-    """The dimensions with their defaults, each in the unit that its declaration names."""
-
     teeth: int = dim(15, "", 12, 21, "teeth of the escape wheel", USUAL)
     embraced: float = dim(2.5, "", 1.5, 4.5, "tooth spaces between the two pins, a whole number and a half", USUAL)
     tip_radius: float = dim(3.6, "mm", 0.8, 20.0, "escape wheel, to the front corners of its teeth", CHOSEN)
@@ -280,7 +278,6 @@ CLEARANCE_CONFLICTS = 0.05  # radii of a pin
 
 
 def conflicts(values: PinPallet) -> Iterator[Conflict]:
-    """Every conflict between dimensions, each named by the one to change first."""
     plain = list(_plain(values))
     yield from plain
     if not plain:

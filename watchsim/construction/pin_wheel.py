@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 from watchsim.construction import scene_builder as toml
 from watchsim.construction.design import CHOSEN, Conflict, Design, dim
-from watchsim.construction.outline import angle_of, arc_between, circle, polar, polygon, rounded, turned
-from watchsim.construction.parts import Arms, bob_and_rod
+from watchsim.construction.outline import angle_of, arc_between, circle, polar, rounded, turned
+from watchsim.construction.parts import Arms, pendulum, pendulum_clock
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Edge, Line, Point
@@ -24,8 +24,6 @@ AS_GRAHAM = "as usual with a dead-beat anchor"
 
 @dataclass(frozen=True)
 class PinWheel:
-    """The dimensions with their defaults, each in the unit that its declaration names."""
-
     pins: int = dim(30, "", 16, 60, "of the escape wheel, half round", CHOSEN)
     pin_circle: float = dim(50.0, "mm", 5.0, 300.0, "radius of the circle of the pins' centres", CHOSEN)
     pin_diameter: float = dim(2.4, "mm", 0.2, 15.0, "of the pins before their upper half is cut away", CHOSEN)
@@ -118,7 +116,6 @@ SPARE = 0.3  # degrees of resting face beyond the start
 
 
 def conflicts(values: PinWheel) -> Iterator[Conflict]:
-    """Every conflict between dimensions, each named by the one to change first."""
     anchor = PinAnchor(values)
     if values.lock >= values.lift:
         yield Conflict("lock", f"must be less than the lift of {values.lift:g}°: the impulse would end before the middle")
@@ -195,21 +192,6 @@ def half_pin(anchor: PinAnchor, bearing: float) -> Loop:
     return Loop((arc_between(inner, outer, polar(size, bearing), True), Line(*outer, *inner)), "PINS")
 
 
-def pendulum(anchor: PinAnchor) -> list[Loop]:
-    """Pallets, anchor, rod and bob."""
-    values, size = anchor.values, anchor.values.pin_circle
-    half, low = ROD * size, -values.pendulum
-    rod = [(-half, 0.0), (-half, low), (half, low), (half, 0.0)]
-    return [
-        pallet(anchor, 1),
-        pallet(anchor, -1),
-        arms(anchor),
-        circle("ANCHOR", (0.0, 0.0), HOLE * size, hole=True),
-        polygon("ROD", rod),
-        circle("BOB", (0.0, low), values.bob_radius),
-    ]
-
-
 def pallet(anchor: PinAnchor, side: int) -> Loop:
     """The lower pallet on the left (side 1) or the upper one on the right (-1): resting face, impulse face, back."""
     locking, let_off = anchor.corners(side)
@@ -274,19 +256,15 @@ def scene_text(values: PinWheel) -> str:
             position=toml.at(*anchor.pivot),
             angle=f"{values.start!r}°",
         ),
-        *bob_and_rod(values, IRON, 4.0),
-        toml.torque("wheel", f"{-values.torque:.15g} mN·m"),
-        toml.q_factor("pendulum", values.q_factor),
-        toml.contacts(values, "wheel.PINS pendulum.PALLETS"),
-        toml.run("60 s", "1e-12"),
-        toml.timegrapher(f"{values.lift!r}°"),
+        *pendulum_clock(values, "wheel.PINS pendulum.PALLETS", IRON, 4.0),
     )
 
 
 def draw(values: PinWheel) -> dict[str, Sheet]:
     """Wheel, and pendulum with its anchor."""
-    anchor = PinAnchor(values)
-    return {"escape_wheel": Sheet(tuple(wheel(anchor))), "pendulum": Sheet(tuple(pendulum(anchor)))}
+    anchor, size = PinAnchor(values), values.pin_circle
+    hanging = pendulum(values, [pallet(anchor, side) for side in (1, -1)], arms(anchor), HOLE * size, ROD * size)
+    return {"escape_wheel": Sheet(tuple(wheel(anchor))), "pendulum": Sheet(tuple(hanging))}
 
 
 DESIGN = Design("pin_wheel", "Pin-wheel escapement of a tower clock with its pendulum", PinWheel, draw, scene_text, conflicts)

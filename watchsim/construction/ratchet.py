@@ -16,8 +16,6 @@ from watchsim.geometry.primitives import Point
 
 @dataclass(frozen=True)
 class Ratchet:
-    """The dimensions with their defaults, each in the unit that its declaration names."""
-
     teeth: int = dim(24, "", 8, 80, "teeth of the ratchet wheel", "usual: 20 to 60")
     tip_radius: float = dim(3.0, "mm", 0.3, 50.0, "of the wheel, to the points of its teeth", CHOSEN)
     depth: float = dim(0.4, "mm", 0.02, 10.0, "of the teeth", CHOSEN)
@@ -150,7 +148,6 @@ def draw(values: Ratchet) -> dict[str, Sheet]:
 
 
 def conflicts(values: Ratchet) -> Iterator[Conflict]:
-    """What cannot be drawn or cannot work."""
     if values.depth >= 0.8 * values.tip_radius:
         yield Conflict("depth", f"must be below {0.8 * values.tip_radius:.4g} mm, else no wheel is left")
         return

@@ -16,8 +16,6 @@ from watchsim.geometry.primitives import Edge, Line, Point
 
 @dataclass(frozen=True)
 class Snail:
-    """The dimensions with their defaults, each in the unit that its declaration names."""
-
     steps: int = dim(12, "", 3, 24, "of the snail: hours that it counts", "12; 4 for quarters")
     distance: float = dim(20.0, "mm", 2.0, 200.0, "of the axes of snail and rack", CHOSEN)
     tail: float = dim(20.0, "mm", 2.0, 200.0, "from the rack's axis to the pin of its tail", "Goodrich: as the distance")
@@ -230,7 +228,6 @@ def draw(values: Snail) -> dict[str, Sheet]:
 
 
 def conflicts(values: Snail) -> Iterator[Conflict]:
-    """What cannot be drawn or cannot work."""
     low = values.least + values.pin_radius
     if not abs(values.distance - values.tail) < low < values.distance + values.tail:
         yield Conflict("tail", f"does not bring the pin to the lowest step, {low:.4g} mm from the snail's axis")

@@ -45,8 +45,6 @@ ESTIMATE = "estimate: not published for a watch"
 
 @dataclass(frozen=True)
 class SwissLever:
-    """The dimensions with their defaults, each in the unit that its declaration names."""
-
     teeth: int = dim(15, "", 9, 30, "teeth of the escape wheel", USUAL)
     embraced: float = dim(2.5, "", 1.5, 7.5, "tooth spaces between the two lockings, a whole number and a half", PLAYTNER)
     tip_radius: float = dim(2.4, "mm", 0.5, 20.0, "escape wheel, to the toes of its teeth", CHOSEN)
@@ -341,7 +339,6 @@ LEAST_HORN = 4.0  # degrees of a horn's arc
 
 
 def conflicts(values: SwissLever) -> Iterator[Conflict]:
-    """Every conflict between dimensions, each named by the one to change first."""
     plain = [*_counts(values), *_angles(values)]
     yield from plain
     if plain:

@@ -19,8 +19,6 @@ USUAL = "usual: 90° to 110° (Britten, The Watch and Clock Maker's Handbook)"
 
 @dataclass(frozen=True)
 class Verge:
-    """The dimensions with their defaults, each in the unit that its declaration names."""
-
     teeth: int = dim(
         27, "", 5, 99, "teeth of the crown wheel; odd, so that the two sides are half a pitch apart", "usual: 11 to 31"
     )
@@ -209,7 +207,6 @@ def draw(values: Verge) -> dict[str, Sheet]:
 
 
 def conflicts(values: Verge) -> Iterator[Conflict]:
-    """What cannot be drawn or cannot work."""
     if values.teeth % 2 == 0:
         yield Conflict("teeth", "must be odd: with an even number both sides would meet their flags at once")
     if math.degrees(leaving(values)) > STEEPEST:

@@ -17,8 +17,6 @@ from watchsim.geometry.primitives import Point
 
 @dataclass(frozen=True)
 class WindingClick:
-    """The dimensions with their defaults, each in the unit that its declaration names."""
-
     teeth: int = dim(18, "", 8, 80, "teeth of the ratchet wheel on the barrel's arbor", CHOSEN)
     tip_radius: float = dim(3.0, "mm", 0.3, 50.0, "of the wheel, to the points of its teeth", CHOSEN)
     depth: float = dim(0.6, "mm", 0.02, 10.0, "of the teeth", CHOSEN)
@@ -180,7 +178,6 @@ def draw(values: WindingClick) -> dict[str, Sheet]:
 
 
 def conflicts(values: WindingClick) -> Iterator[Conflict]:
-    """What cannot be drawn or cannot work."""
     if values.depth >= 0.8 * values.tip_radius:
         yield Conflict("depth", f"must be below {0.8 * values.tip_radius:.4g} mm, else no wheel is left")
         return
