@@ -25,6 +25,7 @@ from watchsim.geometry.primitives import Edge
 
 sys.path[:0] = [str(Path(__file__).resolve().parents[1]), str(Path(__file__).resolve().parents[1] / "naive")]
 from chaining import Component, components  # noqa: E402
+from drawing.own_cases import OWN, own_truth  # noqa: E402
 from strangers import DRAWINGS as FOLDER  # noqa: E402
 
 MM_PER_UNIT = {"inch": 25.4, "mm": 1.0, "cm": 10.0, "m": 1000.0, None: 1.0}
@@ -98,7 +99,7 @@ def facts(folder: Path = FOLDER) -> dict[str, Any]:
 
 @cache
 def case(name: str, folder: Path = FOLDER) -> Case:
-    stored = facts(folder)[name]
+    stored = own_truth(folder / name) if folder == OWN else facts(folder)[name]
     fit = CURVED_FIT if any(stored["kinds"].get(kind) for kind in CURVES) else EXACT_FIT
     drawing = read(folder / name, fit=fit)
     truth = in_millimetres(stored, drawing)

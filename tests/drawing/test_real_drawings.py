@@ -1,4 +1,4 @@
-"""Are the drawings of other people's programs read as an independent reader reads them?
+"""Are our drawings, and those of other people's programs, read as an independent reader reads them?
 
 Every file is compared twice: what was drawn, chained by the plainest rule; and what comes out tidied, where the two need not
 differ.
@@ -11,22 +11,27 @@ from collections import Counter
 from typing import Any
 
 import pytest
+from drawing.own_cases import OWN, own_truth
 from every_time import few
-from real_cases import FOLDER, case, cells, facts
+from real_cases import FOLDER, Case, cells, facts
+from real_cases import case as case_in
 from strangers import marks
 
 from watchsim.drawing.read import read
 
 FACTS = facts()
-if not FACTS:
-    pytest.skip("not beside the repository: drawings/truth.json", allow_module_level=True)
-pytestmark = marks(FOLDER)
 LONG = (  # to read
     *("dxf/dxf__issue53.dxf", "dxf/dxf__supported_entities.dxf", "svg/openMEMSdesign__Schrittschaltwerke.svg"),
     *("dxf/trimesh__spline.DXF", "dxf/trimesh__ae.r2000a.dxf", "dxf/trimesh__ae.r2000b.dxf"),
 )
-NAMES = few(sorted(name for name in FACTS if FACTS[name].get("length")), lambda name: name not in LONG)
+THEIRS = few(sorted(name for name in FACTS if FACTS[name].get("length")), lambda name: name not in LONG)
 EMPTY = sorted(name for name in FACTS if not FACTS[name].get("length"))
+OURS = [path.relative_to(OWN).as_posix() for path in sorted(OWN.glob("*/*.dxf"))]
+MARKS = marks(FOLDER / "truth.json")
+NAMES = [
+    *OURS,
+    *(pytest.param(*getattr(one, "values", [one]), marks=[*getattr(one, "marks", ()), *MARKS]) for one in THEIRS or ["all"]),
+]
 HEADER_UNITS = {None: None, "0": None, "1": "inch", "4": "mm", "5": "cm", "6": "m"}
 PAGE_UNITS = {
     "svg/openMEMSdesign__Schrittschaltwerke.svg": "mm",
@@ -35,6 +40,10 @@ PAGE_UNITS = {
     "svg/ezdxf__gear.svg": "pt",
     "svg/svgpathtools__polygons.svg": "px",
 }
+
+
+def case(name: str) -> Case:
+    return case_in(name, OWN if name in OURS else FOLDER)
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -114,7 +123,7 @@ def test_loops_and_areas_of_what_comes_out(name: str) -> None:
     assert abs(gaps) <= max(this.rel, 1e-8) * truth.area
 
 
-@pytest.mark.parametrize("name", EMPTY)
+@pytest.mark.parametrize("name", [pytest.param(name, marks=MARKS) for name in EMPTY or ["all"]])
 def test_drawings_without_geometry_are_errors(name: str) -> None:
     assert any(finding.code == "empty" and finding.severity == "error" for finding in read(FOLDER / name).findings)
 
@@ -126,7 +135,7 @@ def test_units_are_those_of_the_header_or_the_page(name: str) -> None:
         assert found["units"] == PAGE_UNITS.get(name)
         assert found["units_from"] == ("page" if found["units"] else None)
     else:
-        code = FACTS[name]["format"]["insunits"]
+        code = (own_truth(OWN / name) if name in OURS else FACTS[name])["format"]["insunits"]
         assert found["units"] == HEADER_UNITS[code and str(code)]
         assert found["units_from"] == ("header" if found["units"] else None)
     assert any(finding["code"] == "units-missing" for finding in found["findings"]) == (found["units"] is None)

@@ -325,7 +325,9 @@ def arrays_of(state: State) -> StateArrays:
 def copy_of_state(state: State) -> State:
     """A state of its own."""
     parts: dict[str, Any] = {
-        name: part.copy() if isinstance(part, np.ndarray) else copy_of(part) for name, part in state._asdict().items()
+        name: part.copy() if isinstance(part, np.ndarray) else copy_of(part)
+        for name, part in state._asdict().items()
+        if name != "regime"
     }
     return State(**parts | {"regime": Regime._make(part.copy() for part in state.regime)})
 
