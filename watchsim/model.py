@@ -90,14 +90,23 @@ BODY = np.dtype(
     ]
 )
 
+# Laws of damping and the power of the speed that each force goes with: a new one is a key of `scene.keys`, a field of
+# `scene.forces.Damping`, and a line here and in `resistance`.
+DAMPING_LAWS = {"viscous": 1, "quadratic": 2}
+
+
+def resistance(row: Any, speed: Any) -> Any:
+    """Force of damping by speed, N·s/m or N·m·s/rad, for a row of COORDINATE or JOINT; `speed` is not negative."""
+    return row.viscous + row.quadratic * speed
+
+
 COORDINATE = np.dtype(
     [
         ("mass", "f8"),  # kg or kg·m²; 1 where the motion is prescribed: `force` is then an acceleration
         ("driven", "i8"),  # 1: its motion is prescribed, no contact changes it
         ("force", "f8"),  # constant part, N or N·m
-        ("viscous", "f8"),
+        *((law, "f8") for law in DAMPING_LAWS),
         ("coulomb", "f8"),  # dry friction of the bearing, N or N·m
-        ("quadratic", "f8"),
         ("stiffness", "f8"),
         ("rest", "f8"),
         ("level", "f8"),  # where it stands in balance: passages of it are events
@@ -120,8 +129,7 @@ JOINT = np.dtype(
         ("on", "i8"),  # the carrier's angle, or the other body's coordinate
         ("watched", "i8"),  # 1: turning points and passages of the difference are events
         ("force", "f8"),
-        ("viscous", "f8"),
-        ("quadratic", "f8"),
+        *((law, "f8") for law in DAMPING_LAWS),
         ("coulomb", "f8"),  # always 0
         ("stiffness", "f8"),
         ("rest", "f8"),

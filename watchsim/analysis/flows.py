@@ -17,7 +17,7 @@ from watchsim.analysis.forces import Forces, absolute, forces
 from watchsim.dynamics.forces import line_spring_energies as _energies
 from watchsim.dynamics.forces import line_spring_powers
 from watchsim.mechanism.compile import Compiled
-from watchsim.model import FREE, OVER_TIME, REPEATED, Model
+from watchsim.model import DAMPING_LAWS, FREE, OVER_TIME, REPEATED, Model, resistance
 from watchsim.simulation.state import EventKind
 from watchsim.simulation.trajectory import Array, Trajectory, frames, speeds
 
@@ -225,7 +225,7 @@ def _changing(model: Model) -> tuple[list[int], list[int]]:
     integrated."""
     c = model.coordinates
     moved = {int(k) for joint in model.joints if c.driven[joint.on] for k in (joint.coordinate, joint.on)}
-    slowed = {int(k) for k in np.flatnonzero((c.coulomb != 0.0) | (c.viscous != 0.0) | (c.quadratic != 0.0))}
+    slowed = {int(k) for k in np.flatnonzero(np.any([c[law] != 0.0 for law in ("coulomb", *DAMPING_LAWS)], axis=0))}
     for table in model.tables:
         moved |= {int(table.coordinate), *([int(table.on)] if table.on >= 0 else [])}
     for joint in model.joints:
@@ -290,7 +290,7 @@ def _changing_power(model: Model, t: Array, q: Row, u: Row) -> Array:
         if c.driven[joint.on]:  # what keeps the prescribed motion up against spring and damping
             own, on = int(joint.coordinate), int(joint.on)
             w = u[own] - u[on]
-            held = joint.stiffness * (q[own] - q[on] - joint.rest) + w * (joint.viscous + joint.quadratic * np.abs(w))
+            held = joint.stiffness * (q[own] - q[on] - joint.rest) + w * resistance(joint, np.abs(w))
             power[:, on] -= held * u[on]
     return power
 
@@ -301,10 +301,10 @@ def _damping_power(model: Model, u: Row) -> Array:
     power = np.zeros((len(next(iter(u.values()))), len(c)))
     for k, value in u.items():
         speed = np.abs(value)
-        power[:, k] = speed * (c.coulomb[k] + speed * (c.viscous[k] + c.quadratic[k] * speed))
+        power[:, k] = speed * (c.coulomb[k] + speed * resistance(c[k], speed))
     for joint in model.joints:
         w = np.abs(u[int(joint.coordinate)] - u[int(joint.on)])
-        power[:, joint.coordinate] += w * w * (joint.viscous + joint.quadratic * w)
+        power[:, joint.coordinate] += w * w * resistance(joint, w)
     return power
 
 

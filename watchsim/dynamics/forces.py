@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from watchsim.contact.cell_lookup import along
 from watchsim.contact.gaps import BACKWARD, FORWARD, OPEN, STICK, contact_kinematics, place, shape_of_contact
 from watchsim.jit import entry, hot_kernel, kernel
-from watchsim.model import FREE, OVER_TIME, PIVOT, REPEATED, SLIDE
+from watchsim.model import FREE, OVER_TIME, PIVOT, REPEATED, SLIDE, resistance
 from watchsim.tolerances import KNOT_ROUNDING
 
 # What do springs between points of two bodies do?
@@ -233,11 +233,13 @@ def driving_force(model, i, q):
     return force
 
 
+damping_rate = kernel(resistance)
+
+
 @kernel
 def damping_force(model, i, u):
-    """-c u - c2 u|u| of coordinate i; dry friction is in bearing_friction.py."""
-    coordinate = model.coordinates[i]
-    return -u * (coordinate.viscous + coordinate.quadratic * abs(u))
+    """Of coordinate i against its speed; dry friction is in bearing_friction.py."""
+    return -u * damping_rate(model.coordinates[i], abs(u))
 
 
 @kernel
@@ -248,9 +250,9 @@ def stretch(joint, q):
 
 @kernel
 def joint_damping(joint, u):
-    """-c w - c2 w|w| with the speed w of the one coordinate against the other."""
+    """Against the speed w of the one coordinate less that of the other."""
     w = u[joint.coordinate] - u[joint.on]
-    return -w * (joint.viscous + joint.quadratic * abs(w))
+    return -w * damping_rate(joint, abs(w))
 
 
 @kernel
@@ -337,7 +339,7 @@ def drive_power(model, t, q, u):
 
 @hot_kernel
 def damping_power(model, q, u):
-    """Power taken by viscous and quadratic damping, W; never negative."""
+    """Power taken by damping but for dry friction, W; never negative."""
     power = 0.0
     for i in range(len(model.coordinates)):
         power -= u[i] * damping_force(model, i, u[i])

@@ -20,6 +20,7 @@ from watchsim.model import (
     BODY,
     CONSTANT,
     COORDINATE,
+    DAMPING_LAWS,
     FREE,
     JOINT,
     MOTION_CODE,
@@ -139,8 +140,8 @@ def forced_coordinates(
     stiffest = _watch(scene, targets)
     for damping in scene.damping:
         row, ratio = targets.row(damping.body, damping.against), abs(targets.ratio(damping.body))
-        row.viscous += ratio**2 * damping.viscous
-        row.quadratic += ratio**3 * damping.quadratic
+        for law, power in DAMPING_LAWS.items():
+            row[law] += ratio ** (power + 1) * getattr(damping, law)
         row.coulomb += ratio * damping.coulomb
     tables, knots = _tables(scene, targets)
     joints = targets.joints
@@ -154,7 +155,8 @@ def forced_coordinates(
     held = coordinates_of_lines(scene, lines, slices, bound)
     jointed = {*joints.coordinate.tolist(), *joints.on.tolist(), *(k for k, _ in held)}
     for i, row in enumerate(rows):
-        row.linear = row.quadratic == 0.0 and row.weight_x == 0.0 and row.weight_y == 0.0 and i not in tabled | jointed
+        bent = any(row[law] != 0.0 for law, power in DAMPING_LAWS.items() if power != 1)
+        row.linear = not bent and row.weight_x == 0.0 and row.weight_y == 0.0 and i not in tabled | jointed
     inverse = np.where(rows.driven != 0, 0.0, 1.0 / rows.mass)
     light = 1.0 / (inverse[joints.coordinate] + inverse[joints.on])
     fastest = float(

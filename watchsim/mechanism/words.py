@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+from watchsim.model import DAMPING_LAWS
 from watchsim.scene.forces import Damping, LineSpring, Mainspring, Spring
+from watchsim.scene.keys import DAMPING
 from watchsim.scene.roles import Oscillator, keeps_time, loads, oscillator, oscillators
 from watchsim.scene.scene import Body, Scene
 from watchsim.scene.trains import at_start
@@ -162,17 +164,15 @@ def _hertz(scene: Scene, spring: Spring) -> float:
 
 
 def _damping(scene: Scene, damping: Damping) -> str:
-    viscous, quadratic = damping.viscous, damping.quadratic
-    linear = scene.body(damping.body).motion == "slide"
-    parts = [metric(viscous, "N·s/m" if linear else "N·m·s/rad")] if viscous else []
+    motion, parts = scene.body(damping.body).motion, []
     single = damping.against is None
     swinging = oscillator(scene.bodies, scene.springs, scene.gravity, damping.body) if single else None
-    if viscous and swinging and swinging.hertz:
-        parts.append(f"Q = {math.sqrt(swinging.stiffness * swinging.inertia) / viscous:.6g}")
-    if quadratic:
-        parts.append(metric(quadratic, "N·s²/m²" if linear else "N·m·s²/rad²"))
-    if damping.coulomb:
-        parts.append(f"dry friction {metric(damping.coulomb, 'N' if linear else 'N·m')}")
+    for law in (*DAMPING_LAWS, "coulomb"):
+        dimension, value = DAMPING[law].dimension_for(motion), getattr(damping, law)
+        if value and dimension:
+            parts.append(f"{'dry friction ' if law == 'coulomb' else ''}{metric(value, dimension.si)}")
+        if value and law == "viscous" and swinging and swinging.hertz:
+            parts.append(f"Q = {math.sqrt(swinging.stiffness * swinging.inertia) / value:.6g}")
     return ", ".join(parts) or "none"
 
 

@@ -10,6 +10,7 @@ from typing import Any
 from watchsim import units
 from watchsim.geometry.hairspring import Coil
 from watchsim.geometry.primitives import Point
+from watchsim.model import DAMPING_LAWS
 from watchsim.scene.errors import Faults
 from watchsim.scene.forces import Damping, LineSpring, Spring, Torque
 from watchsim.scene.keys import COIL, DAMPING, FEWEST_TURNS, LEAF, LINE_SPRING, MOST_TURNS, SPRING, TORQUE, Keys, nearest
@@ -23,22 +24,26 @@ from watchsim.units import LENGTH
 
 # How is a spring drawn, which acts as a torque and has no shape of its own?
 
-EXAMPLE_READ_COIL = 'draw = { inner = "0.5 mm", outer = "2.8 mm", turns = 13, stud = "90°" }'
+COIL_EXAMPLE = 'draw = { inner = "0.5 mm", outer = "2.8 mm", turns = 13, stud = "90°" }'
 
 
 def read_coil(table: Table, body: Body | None) -> Coil | None:
     """As `draw` of a spring says; else as the `solids` of its body weigh a hairspring given by numbers; else not at all."""
     if "draw" not in table:
-        return _weighed(body)
+        spirals = () if body is None or body.motion != "pivot" else [one for one in body.solids if one.kind == HAIRSPRING]
+        for solid in spirals:
+            if solid.spiral is not None and FEWEST_TURNS <= solid.spiral.turns <= MOST_TURNS:
+                return Coil(solid.spiral.inner, solid.spiral.outer, solid.spiral.turns, 0.0, solid.width)
+        return None
     if body is not None and body.motion != "pivot":
         table.fault("draw", f'a hairspring is wound about a pivot, and motion of {body.name} is "{body.motion}"')
         return None
     if not isinstance(table.mapping["draw"], dict):
-        table.fault("draw", f"a table is needed here, such as {EXAMPLE_READ_COIL}", with_value=True)
+        table.fault("draw", f"a table is needed here, such as {COIL_EXAMPLE}", with_value=True)
         return None
     keys = Table(table.mapping["draw"], f"{table.path}.draw", COIL, table.faults)
     known = len(table.faults.found)
-    keys.lacks(EXAMPLE_READ_COIL)
+    keys.lacks(COIL_EXAMPLE)
     inner, outer, turns = (keys.quantity(key, NAN) for key in ("inner", "outer", "turns"))
     width = keys.quantity("width")
     if outer <= inner:
@@ -47,31 +52,23 @@ def read_coil(table: Table, body: Body | None) -> Coil | None:
     return Coil(inner, outer, turns, stud, width) if len(table.faults.found) == known else None
 
 
-def _weighed(body: Body | None) -> Coil | None:
-    spirals = () if body is None or body.motion != "pivot" else [one for one in body.solids if one.kind == HAIRSPRING]
-    for solid in spirals:
-        if solid.spiral is not None and FEWEST_TURNS <= solid.spiral.turns <= MOST_TURNS:
-            return Coil(solid.spiral.inner, solid.spiral.outer, solid.spiral.turns, 0.0, solid.width)
-    return None
-
-
 # How are leaf springs read: their stiffness from their size, their preload and the stop on which they rest?
 #
 # A leaf clamped at one end and pressed at the other is a cantilever: F = 3 E I y / L³ with I = w t³ / 12, for deflections small
 # against its length (Timoshenko, *Strength of Materials*, part I, 1930, art. 37 to 39: deflection of a cantilever).
 # On a pivoted body it presses at the end of an arm, which makes it a torsional spring of arm² times that.
 
-EXAMPLE_READ_LEAF = 'leaf = { modulus = "200 GPa", length = "5 mm", width = "0.5 mm", thickness = "0.08 mm" }'
+LEAF_EXAMPLE = 'leaf = { modulus = "200 GPa", length = "5 mm", width = "0.5 mm", thickness = "0.08 mm" }'
 
 
 def leaf_stiffness(table: Table, motion: str) -> float:
     """3 E I / L³ of the leaf of a spring, N/m; times arm², N·m/rad, on a body with motion "pivot". NaN after a fault."""
     if not isinstance(table.mapping["leaf"], dict):
-        table.fault("leaf", f"a table is needed here, such as {EXAMPLE_READ_LEAF}", with_value=True)
+        table.fault("leaf", f"a table is needed here, such as {LEAF_EXAMPLE}", with_value=True)
         return NAN
     keys = Table(table.mapping["leaf"], f"{table.path}.leaf", LEAF, table.faults)
     turns = motion == "pivot" or (not motion and "arm" in keys)
-    example = EXAMPLE_READ_LEAF + (' with arm = "2 mm", on a pivoted body' if turns else "")
+    example = LEAF_EXAMPLE + (' with arm = "2 mm", on a pivoted body' if turns else "")
     keys.lacks(example, *(("arm",) if turns else ()))
     if "arm" in keys and not turns:
         keys.fault("arm", "belongs to a leaf on a pivoted body: leave it out")
@@ -136,7 +133,7 @@ def read_line_springs(mapping: Mapping[str, Any], bodies: tuple[Body, ...], faul
 def _line_spring(table: Table, known: Mapping[str, Body]) -> LineSpring | None:
     ends = _ends(table, known)
     points = _points(table)
-    stiffness, viscous = _stiffness(table), table.quantity("viscous")
+    stiffness, viscous = _line_stiffness(table), table.quantity("viscous")
     if "length" in table and "tension" in table:
         table.fault("tension", "length and tension say the same thing: leave one out")
     if ends is None:
@@ -153,7 +150,7 @@ def _line_spring(table: Table, known: Mapping[str, Body]) -> LineSpring | None:
     return LineSpring((first.name, second.name if second else None), points, stiffness, length, viscous)
 
 
-def _stiffness(table: Table) -> float:
+def _line_stiffness(table: Table) -> float:
     if "leaf" in table:
         if "stiffness" in table:
             table.fault("leaf", "stiffness and leaf say the same thing: leave one out")
@@ -251,7 +248,7 @@ def read_damping(
 def _entries(mapping: Mapping[str, Any], section: str, keys: Keys, bodies: tuple[Body, ...], faults: Faults) -> Iterator[Entry]:
     known = {body.name: body for body in bodies}
     elements = listed(mapping, section, faults)
-    masses = _masses(bodies) if elements else {}
+    masses = {body.name: mass for body, mass in zip(bodies, loads(bodies)[2], strict=True)} if elements else {}
     for i, element in enumerate(elements):
         table = Table(element, f"{section}.{i}", keys, faults)
         name = table.mapping.get("body")
@@ -260,11 +257,6 @@ def _entries(mapping: Mapping[str, Any], section: str, keys: Keys, bodies: tuple
         _note_body(table, known)
         other = known.get(read_against(table, body, known) or "")
         yield Entry(table, body, other, masses.get(body.name, NAN) if body else NAN)
-
-
-def _masses(bodies: tuple[Body, ...]) -> dict[str, float]:
-    """What the coordinate of each body weighs: turning its inertia, sliding its mass, with all that is geared to it."""
-    return {body.name: mass for body, mass in zip(bodies, loads(bodies)[2], strict=True)}
 
 
 def _note_body(table: Table, known: Mapping[str, Body]) -> None:
@@ -284,7 +276,7 @@ def _note_body(table: Table, known: Mapping[str, Body]) -> None:
 
 
 def _spring(entry: Entry) -> Spring:
-    stiffness = _stiffness_read_forces(entry)
+    stiffness = _spring_stiffness(entry)
     frequency = math.sqrt(stiffness / entry.mass) / math.tau if "frequency" in entry.table and stiffness > 0.0 else None
     coil = read_coil(entry.table, entry.body)
     rest = read_rest(entry.table, entry.body, stiffness, entry.other)
@@ -292,7 +284,7 @@ def _spring(entry: Entry) -> Spring:
     return Spring(entry.name, stiffness, rest, frequency, coil, entry.against, *stop)
 
 
-def _stiffness_read_forces(entry: Entry) -> float:
+def _spring_stiffness(entry: Entry) -> float:
     """Of a spring given by its stiffness, by the frequency at which it makes its body swing, or by the size of a leaf."""
     table = entry.table
     given = [key for key in ("stiffness", "frequency", "leaf") if key in table]
@@ -347,11 +339,12 @@ def _tabulated(entry: Entry) -> Torque:
 
 def _damping(entry: Entry, swinging: Oscillator | None, spring_lost: bool) -> Damping:
     table = entry.table
-    if table.is_table and not any(key in table for key in ("q_factor", "viscous", "quadratic", "coulomb")):
+    if table.is_table and not any(key in table for key in ("q_factor", *DAMPING_LAWS, "coulomb")):
         choices = 'q_factor = 250, viscous = "0.6 nN·m·s/rad", quadratic = "1 nN·m·s²/rad²" or coulomb = "10 nN·m"'
         table.fault("", f"missing: {choices}")
     viscous = _from_quality(entry, swinging, spring_lost) if "q_factor" in table else table.quantity("viscous")
-    return Damping(entry.name, viscous, table.quantity("quadratic"), table.quantity("coulomb"), entry.against)
+    others = {key: table.quantity(key) for key in (*DAMPING_LAWS, "coulomb") if key != "viscous"}
+    return Damping(entry.name, viscous, against=entry.against, **others)
 
 
 def _from_quality(entry: Entry, swinging: Oscillator | None, spring_lost: bool) -> float:

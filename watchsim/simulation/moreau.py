@@ -24,6 +24,7 @@ from watchsim.contact.gaps import (
 from watchsim.dynamics.delassus import copy, drive_through_contacts
 from watchsim.dynamics.forces import (
     add_line_springs,
+    damping_rate,
     driving_force,
     joint_damping,
     joint_energy,
@@ -194,9 +195,8 @@ def _believable(model, options, k, h, work):
 def _free_velocity(model, state, h, work):
     """Velocities after the step without contacts: springs and damping at its middle, drives at the middle's place."""
     for i in range(len(work.u)):
-        coordinate = model.coordinates[i]
         work.force[i] = driving_force(model, i, work.q[i])
-        work.damping[i] = coordinate.viscous + coordinate.quadratic * abs(work.u[i])
+        work.damping[i] = damping_rate(model.coordinates[i], abs(work.u[i]))
     for j in range(len(model.tables)):
         table, force = model.tables[j], table_force(model, j, state.clock.time + 0.5 * h, work.q)
         work.force[table.coordinate] += force
