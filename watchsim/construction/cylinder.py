@@ -267,7 +267,7 @@ def wheel_of(shell: Shell) -> BalanceWheel:
 
 LEAST_WALL = 0.04  # of the outer radius
 PARTS = 20  # of an edge
-FINE_CONFLICTS = 1e-9  # of a radius
+HAIR = 1e-9  # of a radius
 SLIDES = 5.0  # degrees by which an impulse face must be steeper than the angle of friction
 SPARE = 5.0  # degrees of swing
 
@@ -314,11 +314,11 @@ def _drive(values: Cylinder, made: Shell) -> Iterator[Conflict]:
 def _belly(made: Shell) -> Iterator[Conflict]:
     """A tooth that rests inside must be within the inner circle, those on both sides of the shell beyond the outer one."""
     inside = max(_distances(made, made.rests_inside))
-    if inside > made.inner * (1.0 + FINE_CONFLICTS):
+    if inside > made.inner * (1.0 + HAIR):
         words = f"a tooth that rests inside would stand out of the shell by {1e3 * (inside - made.inner):.3g} µm"
         yield Conflict("drop", f"{words}: more drop, or less lift")
     outside = min(*_distances(made, made.rests_outside), *_distances(made, made.rests_outside - made.pitch))
-    if outside < made.outer * (1.0 - FINE_CONFLICTS):
+    if outside < made.outer * (1.0 - HAIR):
         words = f"the tooth before one that rests outside would be {1e3 * (made.outer - outside):.3g} µm within the shell"
         yield Conflict("drop", f"{words}: more drop, or less lift")
 

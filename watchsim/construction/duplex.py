@@ -137,13 +137,6 @@ def resting_form(points: DuplexPoints) -> ToothForm:
     return ToothForm(values.tip_radius, ROOT * s, 0.03 * s, STRAIGHT * s, values.undercut + TAPER, HOLLOW * s, 0.3 * s)
 
 
-def floor_between(points: DuplexPoints) -> float:
-    """Degrees of the rim between two resting teeth, at the wheel's centre."""
-    chain = tooth_and_gap(resting_form(points), points.values.undercut, points.pitch)
-    first, last = chain[0], chain[-1]
-    return math.degrees(abs(first.sweep) + abs(last.sweep)) if isinstance(first, Arc) and isinstance(last, Arc) else 0.0
-
-
 def impulse_tooth(points: DuplexPoints) -> Loop:
     """The section of an upright tooth, a wedge with its point on the x axis."""
     s = points.values.tip_radius / REFERENCE
@@ -218,7 +211,9 @@ def conflicts(values: Duplex) -> Iterator[Conflict]:
         yield Conflict(
             "undercut", f"must be more than {values.notch / 2.0:.4g}°, half of the notch, so that points touch its wall"
         )
-    floor = floor_between(points)
+    chain = tooth_and_gap(resting_form(points), points.values.undercut, points.pitch)
+    first, last = chain[0], chain[-1]
+    floor = math.degrees(abs(first.sweep) + abs(last.sweep)) if isinstance(first, Arc) and isinstance(last, Arc) else 0.0
     if not LEAST_FLOOR <= floor <= points.pitch:
         words = f"with {values.teeth} teeth leaves no rim between the feet of the resting teeth"
         yield Conflict("undercut", f"{words}: {LEAST_FLOOR:g}° of it are needed; less undercut, or fewer teeth")

@@ -188,11 +188,6 @@ def pendulum(at: Points) -> list[Loop]:
     ]
 
 
-def arm_clearance(at: Points) -> float:
-    """mm from the line through a pallet's nib to the near edge of its arm."""
-    return NEAR * _unit(at)
-
-
 def _stop(at: Points, side: int) -> tuple[float, float]:
     """On the far side of the pallet that lies on it."""
     beside = turned((HELD * at.length, -side * (FAR + PIN) * _unit(at)), at.stopped(side))
@@ -328,7 +323,7 @@ def _pallets(at: Points) -> Iterator[Conflict]:
         yield Conflict("nib", f"must be at most {DEEPEST * at.values.height:.4g} mm, else it meets the floor between the teeth")
         return
     for side in (ENTRY, EXIT):
-        if cuts_in(at, side) > CLEAR * arm_clearance(at):
+        if cuts_in(at, side) > CLEAR * (NEAR * _unit(at)):
             yield Conflict("span", "lets the arm of a pallet cut into the teeth as it swings: nearer to 90°, or less release")
             return
         lifted = at.length * math.radians(side * (at.lean(-side * at.values.release, side) - at.stopped(side)))
@@ -342,11 +337,7 @@ def _pallets(at: Points) -> Iterator[Conflict]:
         if at.values.nib < CATCHES * short:
             yield Conflict("nib", f"must be above {CATCHES * short:.4g} mm, else it passes over its tooth: or less overswing")
             return
-    yield from _counterweights(at)
-
-
-def _counterweights(at: Points) -> Iterator[Conflict]:
-    """Too weak to lift a pallet before the pendulum comes back, or so strong that friction does not hold it on its tooth."""
+    # Too weak to lift a pallet before the pendulum comes back, or so strong that friction does not hold it on its tooth.
     values = at.values
     period = math.tau * math.sqrt(1e-3 * values.pendulum / values.gravity)
     needed = 2e-3 * values.nib / at.length * values.pallet_inertia / (QUICK * period) ** 2

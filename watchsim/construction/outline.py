@@ -171,22 +171,18 @@ def _offset(edge: Edge, distance: float) -> Edge:
 def _crossings(first: Edge, second: Edge) -> list[Point]:
     """Points common to the infinite lines and full circles on which the edges lie."""
     if isinstance(first, Line) and isinstance(second, Line):
-        return _line_line(first, second)
+        tx, ty = first.tangent(0.0)
+        ux, uy = second.tangent(0.0)
+        cross = tx * uy - ty * ux
+        if cross == 0.0:
+            return []
+        s = ((second.x0 - first.x0) * uy - (second.y0 - first.y0) * ux) / cross
+        return [(first.x0 + s * tx, first.y0 + s * ty)]
     if isinstance(first, Line):
         return _line_circle(first, second)  # type: ignore[arg-type]
     if isinstance(second, Line):
         return _line_circle(second, first)
     return _circle_circle(first, second)
-
-
-def _line_line(first: Line, second: Line) -> list[Point]:
-    tx, ty = first.tangent(0.0)
-    ux, uy = second.tangent(0.0)
-    cross = tx * uy - ty * ux
-    if cross == 0.0:
-        return []
-    s = ((second.x0 - first.x0) * uy - (second.y0 - first.y0) * ux) / cross
-    return [(first.x0 + s * tx, first.y0 + s * ty)]
 
 
 def _line_circle(line: Line, circle: Arc) -> list[Point]:

@@ -274,7 +274,7 @@ def _from_back(design: PinLever, centre: Point) -> float:
 LEAST_TOOTH, LEAST_GAP, LEAST_RISE = 2.0, 1.0, 3.0  # degrees
 SPANS = (18.0, 50.0)  # degrees, half of what the pins embrace
 STEEPEST = 50.0  # degrees of an impulse face from the wheel's rim
-CLEARANCE_CONFLICTS = 0.05  # radii of a pin
+OFF_THE_FLOOR = 0.05  # radii of a pin
 
 
 def conflicts(values: PinPallet) -> Iterator[Conflict]:
@@ -337,7 +337,7 @@ def _teeth(values: PinPallet, design: PinLever) -> Iterator[Conflict]:
     foot, _ = locking_foot(design)
     front = math.dist(foot, (design.tip_radius, 0.0))
     deepest = min(math.hypot(*design.placed(side, side * design.bank)) for side in (1, -1)) - design.pin
-    floor = root_radius(design) + CLEARANCE_CONFLICTS * design.pin
+    floor = root_radius(design) + OFF_THE_FLOOR * design.pin
     used = max(design.front_used(side, design.bank) for side in (1, -1))
     if deepest < floor or used > front:
         most = values.pallet_pin - max(floor - deepest, used - front)

@@ -420,17 +420,12 @@ def _roller(values: SwissLever, design: Swiss) -> Iterator[Conflict]:
     needed = crescent_needed(design)
     if values.crescent < needed:
         yield Conflict("crescent", f"must be at least {needed:.4g}°: the dart enters the roller that far beside the jewel")
-    horn = _horn_arc(design)
-    if horn < LEAST_HORN:
-        yield Conflict("horn_end", f"leaves {horn:.3g}° for the horn beside the slot; at least {LEAST_HORN:g}° are needed")
-
-
-def _horn_arc(design: Swiss) -> float:
-    """Degrees round the balance from the mouth of the slot to the end of the horn."""
     centre, half = design.balance_from_bank(-1), design.slot_width / 2.0
     mouth = (half, centre[1] - math.sqrt(design.horn_radius**2 - (half - centre[0]) ** 2))
     end = polar(design.horn_radius, -90.0 + design.horn_end + design.bank, centre)
-    return (angle_of(end, centre) - angle_of(mouth, centre) + 180.0) % 360.0 - 180.0
+    horn = (angle_of(end, centre) - angle_of(mouth, centre) + 180.0) % 360.0 - 180.0
+    if horn < LEAST_HORN:
+        yield Conflict("horn_end", f"leaves {horn:.3g}° for the horn beside the slot; at least {LEAST_HORN:g}° are needed")
 
 
 CLEAR = 1e-4  # degrees by which lever and wheel stand off what they rest on

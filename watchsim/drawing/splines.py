@@ -42,11 +42,7 @@ def through(fit_points: Sequence[Vector], tangents: Sequence[Vector], closed: bo
     distinct = [b for a, b in pairwise([fit_points[-1], *fit_points]) if a != b]
     if closed and fit_points[0] != fit_points[-1] and len(distinct) >= FEWEST:
         return around(distinct)
-    return from_end_to_end(fit_points, tangents)
-
-
-def from_end_to_end(fit_points: Sequence[Vector], tangents: Sequence[Vector]) -> Cubic:
-    """As CAD programs draw it (ezdxf's)."""
+    # As CAD programs draw it (ezdxf's).
     from ezdxf.math import fit_points_to_cad_cv
 
     try:

@@ -454,7 +454,10 @@ def _follow(curves: Sequence[Curve], tolerance: Array, effort: Effort, depth: in
             if chain is None:
                 away = _extent(curves[k])
                 if away <= tolerance[k] or depth >= DEEPEST:
-                    result[k] = _chord(curves[k], away, float(tolerance[k]))
+                    # The line from end to end of a short curve that is at most `away` from it.
+                    (x0, y0), (x1, y1) = curves[k].ends.tolist()
+                    chord = Line(x0, y0, x1, y1)
+                    result[k] = Fit((chord,) if chord.length > NOTHING * float(tolerance[k]) else (), away)
                 else:
                     missing.append(k)
     if missing:
@@ -473,13 +476,6 @@ def _chains(curves: Sequence[Curve], tolerance: Array, rounds: int, effort: Effo
         for k, chain in zip(rest, fewest(Bundle([curves[k] for k in rest]), tolerance[rest], rounds, effort), strict=True):
             found[k] = chain
     return found
-
-
-def _chord(curve: Curve, away: float, tolerance: float) -> Fit:
-    """The line from end to end of a short curve that is at most `away` from it."""
-    (x0, y0), (x1, y1) = curve.ends.tolist()
-    chord = Line(x0, y0, x1, y1)
-    return Fit((chord,) if chord.length > NOTHING * tolerance else (), away)
 
 
 def _end_to_end(fits: Sequence[Fit]) -> Fit:

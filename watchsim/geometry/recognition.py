@@ -92,7 +92,11 @@ def _classified(bundle: Bundle, tolerance: Array) -> _Spans:
     )
     third = count // 3
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-        centres = _circumcentres(p[:, 0], p[:, third], p[:, 2 * third])
+        a = p[:, 0]
+        u, v = p[:, third] - a, p[:, 2 * third] - a
+        area = 2.0 * crosses(u, v)
+        uu, vv = dots(u, u), dots(v, v)
+        centres = a + np.column_stack((v[:, 1] * uu - u[:, 1] * vv, u[:, 0] * vv - v[:, 0] * uu)) / area[:, None]
         arms = p - centres[:, None]
         distances = np.hypot(arms[..., 0], arms[..., 1])
         radii = np.mean(distances, axis=1)
@@ -103,14 +107,6 @@ def _classified(bundle: Bundle, tolerance: Array) -> _Spans:
         near = np.max(np.abs(distances - radii[:, None]), axis=1) <= np.minimum(ROUND * rise, MEANT * tolerance)
     one_way = np.all(steps > 0.0, axis=1) | np.all(steps < 0.0, axis=1)
     return _Spans(p, straight, ~straight & long & near & one_way & np.isfinite(radii), centres, radii)
-
-
-def _circumcentres(a: Array, b: Array, c: Array) -> Array:
-    """The centres (n, 2) of the circles through three points each; not finite where they lie on a line."""
-    u, v = b - a, c - a
-    area = 2.0 * crosses(u, v)
-    uu, vv = dots(u, u), dots(v, v)
-    return a + np.column_stack((v[:, 1] * uu - u[:, 1] * vv, u[:, 0] * vv - v[:, 0] * uu)) / area[:, None]
 
 
 def _continues(spans: _Spans, first: int, k: int, tolerance: float) -> bool:

@@ -63,7 +63,14 @@ def _polygon(table: Table) -> Loop | None:
     """Counter-clockwise whichever way it was written: the material is inside."""
     points = _points(table, "polygon", at_least=3)
     if points and not any(math.isnan(c) for point in points for c in point):
-        _note_defects(table, points)
+        if len(set(points)) < len(points):
+            table.fault(
+                "polygon", "a point occurs twice in it; the outline closes by itself, without repeating the first point"
+            )
+        elif signed_area(points) == 0.0:
+            table.fault("polygon", "it encloses no area")
+        elif crossing := first_crossing(points):
+            table.fault("polygon", f"its sides {crossing[0]} and {crossing[1]} (counted from 0) cross each other")
         points = points if signed_area(points) > 0.0 else points[::-1]
     edges = tuple(Line(*start, *end) for start, end in zip(points, (*points[1:], *points[:1]), strict=True))
     return Loop(edges, "polygon") if edges else None
@@ -78,15 +85,6 @@ def _points(table: Table, key: str, at_least: int) -> tuple[Point, ...]:
         )
         return ()
     return tuple(table.point(f"{key}.{i}", item, dimension) for i, item in enumerate(value))
-
-
-def _note_defects(table: Table, points: Sequence[Point]) -> None:
-    if len(set(points)) < len(points):
-        table.fault("polygon", "a point occurs twice in it; the outline closes by itself, without repeating the first point")
-    elif signed_area(points) == 0.0:
-        table.fault("polygon", "it encloses no area")
-    elif crossing := first_crossing(points):
-        table.fault("polygon", f"its sides {crossing[0]} and {crossing[1]} (counted from 0) cross each other")
 
 
 def signed_area(points: Sequence[Point]) -> float:

@@ -385,14 +385,8 @@ def _along(one: Table, part: list[Loop]) -> Point:
 def _note_crossings(table: Table, path: str, drawing: Drawing, layer: str) -> None:
     """Outlines of one layer that lay apart may cross once they are moved."""
     outlines = [Outline(loop, ("an edge",) * len(loop.edges)) for loop in drawing.loops if loop.layer == layer]
-    for finding in _errors(outlines):
-        table.faults.add(
-            path, f"moved so far, its outlines cross{finding}. Move it less", shown(table.mapping["adjust"][layer])
-        )
-        return
-
-
-def _errors(outlines: list[Outline]) -> Iterator[str]:
-    for finding in crossings(outlines) if outlines else ():
-        if finding.severity == "error":
-            yield "" if finding.x_mm is None else f" at ({finding.x_mm:.4g}, {finding.y_mm:.4g}) mm"
+    wrong = [finding for finding in crossings(outlines) if finding.severity == "error"] if outlines else []
+    if wrong:
+        x, y = wrong[0].x_mm, wrong[0].y_mm
+        at = "" if x is None else f" at ({x:.4g}, {y:.4g}) mm"
+        table.faults.add(path, f"moved so far, its outlines cross{at}. Move it less", shown(table.mapping["adjust"][layer]))

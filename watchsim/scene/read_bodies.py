@@ -52,7 +52,10 @@ def read_inertias(table: Table, motion: str, outlines: Outlines, elsewhere: Set[
     else:
         weight = _uniform_plate(table, motion, outlines)
         findings = uniform_notices(table, outlines, weight, elsewhere) if weight and "inertia" not in table else ()
-    _note_conflicts(table, motion, outlines)
+    if "mass" in table and "solids" in table:
+        table.fault("mass", "the solids give the mass already: leave out mass or solids")
+    if motion == "free" and "solids" in table and outlines.pivot is not None:
+        table.fault("pivot", "a free body turns about its centre of mass, which the solids give: leave out pivot or solids")
     origin = outlines.pivot or ((weight.centre if weight else (0.0, 0.0)) if motion == "free" else (0.0, 0.0))
     mass = table.quantity("mass", weight.mass if weight else 0.0)
     inertia = table.quantity("inertia", _shape_inertia(weight, motion, origin))
@@ -104,13 +107,6 @@ def _shape_inertia(weight: Weight | None, motion: str, origin: Point) -> float:
     if weight is None:
         return 0.0
     return weight.inertia if motion == "free" else weight.about(origin)
-
-
-def _note_conflicts(table: Table, motion: str, outlines: Outlines) -> None:
-    if "mass" in table and "solids" in table:
-        table.fault("mass", "the solids give the mass already: leave out mass or solids")
-    if motion == "free" and "solids" in table and outlines.pivot is not None:
-        table.fault("pivot", "a free body turns about its centre of mass, which the solids give: leave out pivot or solids")
 
 
 def _note_massless(table: Table, motion: str, inertias: Inertias, outlines: Outlines) -> None:

@@ -127,19 +127,15 @@ def _contact(table: Table, known: BodyIndex) -> Contact:
     sides = _sides(table, known)
     contact = Contact(sides, *(table.quantity(key) for key in ("friction", "restitution", "tangential_restitution")))
     if contact.tangential_restitution > 0.0:
-        _note_law(table, contact, known.law)
+        # Not every law gives tangential impulses back.
+        if known.law == "coulomb":
+            cure = 'write tangential_law = "pg1996" (or "shifted") under [scene]'
+            message = f'the law "coulomb" gives no tangential impulse back: {cure}'
+            table.fault("tangential_restitution", message, with_value=True)
+        elif known.law == "shifted" and contact.tangential_restitution > contact.restitution:
+            message = f'must not be above restitution ({contact.restitution:g}) with tangential_law = "shifted"'
+            table.fault("tangential_restitution", message, with_value=True)
     return contact
-
-
-def _note_law(table: Table, contact: Contact, law: str) -> None:
-    """Not every law gives tangential impulses back."""
-    if law == "coulomb":
-        cure = 'write tangential_law = "pg1996" (or "shifted") under [scene]'
-        message = f'the law "coulomb" gives no tangential impulse back: {cure}'
-        table.fault("tangential_restitution", message, with_value=True)
-    elif law == "shifted" and contact.tangential_restitution > contact.restitution:
-        message = f'must not be above restitution ({contact.restitution:g}) with tangential_law = "shifted"'
-        table.fault("tangential_restitution", message, with_value=True)
 
 
 def _sides(table: Table, known: BodyIndex) -> tuple[Side, Side]:
@@ -175,19 +171,14 @@ def _side(table: Table, i: int, name: str, known: BodyIndex) -> Side:
         return NOWHERE
     if body_name in known.sound:
         if not body.loops and body_name in known.bare:
-            _note_bare(table.faults, body)
+            why = "nothing of the drawing can touch, though a contact names this body"
+            cure = 'Name the layers that touch, such as ["TEETH"], or leave layers out: then all with closed outlines can'
+            table.faults.add(f"bodies.{body.name}.layers", f"{why}. {cure}", " = []")
         elif not body.loops:
             table.faults.add(key, f"{body_name} has no outline that could touch: give it a drawing or a shape", f' = "{name}"')
         elif layer and layer not in body.layers:
             _note_layer(table, key, body, layer)
     return Side(body_name, layer or None)
-
-
-def _note_bare(faults: Faults, body: Body) -> None:
-    """Once, however many contacts name the body."""
-    why = "nothing of the drawing can touch, though a contact names this body"
-    cure = 'Name the layers that touch, such as ["TEETH"], or leave layers out: then all with closed outlines can'
-    faults.add(f"bodies.{body.name}.layers", f"{why}. {cure}", " = []")
 
 
 def _note_layer(table: Table, key: str, body: Body, layer: str) -> None:
