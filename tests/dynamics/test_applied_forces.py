@@ -24,9 +24,10 @@ from watchsim.dynamics.forces import (
 )
 from watchsim.jit import callable_kernel
 from watchsim.mechanism.compile import compile_scene
-from watchsim.model import COORDINATE, JOINT, OVER_ANGLE, OVER_TIME, REPEATED, TABLE, records
-from watchsim.scene.forces import LineSpring, Torque
-from watchsim.scene.scene import Body, Scene, swing
+from watchsim.model import COORDINATE, DAMPING_LAWS, JOINT, OVER_ANGLE, OVER_TIME, REPEATED, TABLE, records, resistance
+from watchsim.scene.forces import Damping, LineSpring, Torque
+from watchsim.scene.keys import DAMPING as DAMPING_KEYS
+from watchsim.scene.scene import Body, Geared, Scene, swing
 
 # Do a spring and a damper between two points push every coordinate as their length says?
 
@@ -161,6 +162,21 @@ def test_the_next_knot_is_the_first_one_after_now(names: tuple[str, ...]) -> Non
     for t in times:
         for now in (t, float(np.nextafter(t, 0.0)), float(np.nextafter(t, 1e9))):
             assert after(model, now) == pytest.approx(following(now, *names), rel=1e-14)
+
+
+@pytest.mark.parametrize(("law", "power"), DAMPING_LAWS.items())
+def test_a_law_of_damping_has_a_key_and_a_field_and_goes_with_its_power_of_the_speed(law: str, power: int) -> None:
+    row, key, speed, ratio = records(COORDINATE, 1)[0], DAMPING_KEYS[law], 1.7, 3.0
+    row[law] = 0.2
+    assert resistance(row, speed) * speed == pytest.approx(0.2 * speed**power, rel=1e-14)
+    assert (
+        key.dimension is not None and key.linear is not None and key.linear.powers[0][2] == power - 2
+    )  # a force by speed^power
+    wheel, fly = (Body(name, "pivot", inertia=1.0) for name in ("wheel", "fly"))
+    made = compile_scene(
+        Scene("geared", (wheel, replace(fly, geared=Geared("wheel", ratio))), damping=(Damping("fly", **{law: 0.2}),))
+    )
+    assert made.model.coordinates[0][law] == pytest.approx(0.2 * ratio ** (power + 1), rel=1e-14)  # the same power is taken
 
 
 # Are forces, powers and energies those of the words of the model, with everything in it at once?
