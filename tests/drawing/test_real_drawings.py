@@ -24,13 +24,13 @@ LONG = (  # to read
     *("dxf/dxf__issue53.dxf", "dxf/dxf__supported_entities.dxf", "svg/openMEMSdesign__Schrittschaltwerke.svg"),
     *("dxf/trimesh__spline.DXF", "dxf/trimesh__ae.r2000a.dxf", "dxf/trimesh__ae.r2000b.dxf"),
 )
-THEIRS = few(sorted(name for name in FACTS if FACTS[name].get("length")), lambda name: name not in LONG)
+THEIRS = few(sorted(name for name in FACTS if FACTS[name].get("length")), lambda name: name not in LONG) if FACTS else ["all"]
 EMPTY = sorted(name for name in FACTS if not FACTS[name].get("length"))
 OURS = [path.relative_to(OWN).as_posix() for path in sorted(OWN.glob("*/*.dxf"))]
 MARKS = marks(FOLDER / "truth.json")
 NAMES = [
     *OURS,
-    *(pytest.param(*getattr(one, "values", [one]), marks=[*getattr(one, "marks", ()), *MARKS]) for one in THEIRS or ["all"]),
+    *(pytest.param(*getattr(one, "values", [one]), marks=[*getattr(one, "marks", ()), *MARKS]) for one in THEIRS),
 ]
 HEADER_UNITS = {None: None, "0": None, "1": "inch", "4": "mm", "5": "cm", "6": "m"}
 PAGE_UNITS = {
