@@ -21,7 +21,7 @@ from watchsim.construction.outline import (
     rounded,
     turned,
 )
-from watchsim.construction.parts import Arms, BalanceWheel, balance_wheel
+from watchsim.construction.parts import Arms, BalanceWheel, balance_wheel, hollow_back
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Edge, Line, Point
 
@@ -328,7 +328,7 @@ def toe_heel_back(design: Swiss) -> tuple[Point, Point, Point]:
     return polar(design.tip_radius, 0.0), heel, back
 
 
-def behind(design: Swiss, back: Point) -> tuple[list[Edge], Arc, Point]:
+def behind(design: Swiss, back: Point) -> tuple[list[Edge], Edge, Point]:
     """From the head's back to the floor of the gap: a hollow, and before it a straight piece parallel to the locking face where
     the tooth is so narrow that the hollow would cut through it. Also where it reaches the floor."""
     depth = math.hypot(*back) - root_radius(design)
@@ -336,10 +336,10 @@ def behind(design: Swiss, back: Point) -> tuple[list[Edge], Arc, Point]:
     thickness = back[1] * -math.cos(inward) - (design.tip_radius - back[0]) * math.sin(inward)
     allowed = DEEP * thickness / math.sin(inward)
     if depth <= allowed:
-        return [], *concave_back(design, back, HEEL_ROOT * gap_scale(design))
+        return [], *hollow_back(back, HEEL_ROOT * gap_scale(design), root_radius(design))
     start = along(back, 180.0 - design.undercut, (depth - max(allowed, 0.0)) / -math.cos(inward))
     left = math.hypot(*start) - root_radius(design)
-    return [Line(*back, *start)], *concave_back(design, start, left)
+    return [Line(*back, *start)], *hollow_back(start, left, root_radius(design))
 
 
 def locking_foot(design: Swiss) -> tuple[Point, Arc]:
@@ -350,16 +350,6 @@ def locking_foot(design: Swiss) -> tuple[Point, Arc]:
     floor = arc_between(polar(root_radius(design), angle_of(crossing) - 8.0), crossing, (0.0, 0.0), True)
     _, root, rest = fillet(floor, Line(*crossing, *toe), TOE_ROOT * gap_scale(design))
     return rest.start, root
-
-
-def concave_back(design: Swiss, back: Point, hollow: float) -> tuple[Arc, Point]:
-    """The hollow into the gap's floor: an arc of that radius through `back`, tangent to the floor from outside; and its end."""
-    root = root_radius(design)
-    reach, distance = root + hollow, math.hypot(*back)
-    cosine = (distance**2 + reach**2 - hollow**2) / (2.0 * distance * reach)
-    bearing = angle_of(back) + math.degrees(math.acos(cosine))
-    end = polar(root, bearing)
-    return arc_between(back, end, polar(reach, bearing), False), end
 
 
 def _on_root(face: Line, root: float) -> Point:
