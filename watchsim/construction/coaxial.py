@@ -6,12 +6,22 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from watchsim.construction import lever_parts
 from watchsim.construction import scene_builder as toml
 from watchsim.construction.design import Conflict, Design, dim
-from watchsim.construction.lever_parts import guard, horn_radius, impulse_pin, safety_roller
 from watchsim.construction.outline import along, angle_of, circle, polar, rounded, to_circle, turned
-from watchsim.construction.parts import Arms, BalanceWheel, Stone, ToothForm, balance_wheel, contour
+from watchsim.construction.parts import (
+    Arms,
+    BalanceWheel,
+    Stone,
+    ToothForm,
+    balance_wheel,
+    contour,
+    fork_outline,
+    guard,
+    horn_radius,
+    impulse_pin,
+    safety_roller,
+)
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Point
@@ -263,14 +273,14 @@ class Fork:
         return y - math.sqrt(reach**2 - x * x)
 
 
-def fork_outline(fork: Fork) -> Loop:
+def fork_of(fork: Fork) -> Loop:
     """The fork, drawn with the lever on the second stone's bank."""
     s, bearing = fork.scale, -90.0 + HORN_END + fork.points.bank
     centre = fork.balance_from_bank(-1)
     foot, hip = (0.13 * s, fork.neck + 0.13 * s), (0.36 * s, fork.points.lever_to_balance - HIP * s)
     outside = [(fork.stem_half, fork.neck), foot, hip, polar(fork.horn_radius + HORN_TIP * s, bearing, centre)]
     tip, radii = polar(fork.horn_radius, bearing, centre), [share * s for share in (0.3, 0.15, 0.025, 0.025, 0.015, 0.08)]
-    return lever_parts.fork(outside, tip, (centre, fork.horn_radius), (fork.slot_half, fork.slot_bottom), radii)
+    return fork_outline(outside, tip, (centre, fork.horn_radius), (fork.slot_half, fork.slot_bottom), radii)
 
 
 def guard_pin(fork: Fork) -> Loop:
@@ -308,7 +318,7 @@ def lever(points: Points) -> list[Loop]:
         lever_stone(points).loop("IMPULSE_STONE", EDGE * s),
         body(points, fork),
         circle("ARMS", (0.0, 0.0), BORE * s, hole=True),
-        fork_outline(fork).moved(turn, (0.0, 0.0)),
+        fork_of(fork).moved(turn, (0.0, 0.0)),
         guard_pin(fork).moved(turn, (0.0, 0.0)),
     ]
 

@@ -14,8 +14,8 @@ from scipy.optimize import brentq
 
 from watchsim.construction import scene_builder as toml
 from watchsim.construction.design import CHOSEN, Conflict, Design, Impossible, dim
-from watchsim.construction.lever_parts import edge_half
 from watchsim.construction.outline import along, angle_of, polar, turned
+from watchsim.construction.parts import edge_half
 from watchsim.construction.swiss_lever_outlines import (
     INERTIA,
     MOUTH,

@@ -6,8 +6,6 @@ import math
 from dataclasses import dataclass
 from itertools import pairwise
 
-from watchsim.construction import lever_parts
-from watchsim.construction.lever_parts import guard, impulse_pin, safety_roller
 from watchsim.construction.outline import (
     along,
     angle_of,
@@ -21,7 +19,17 @@ from watchsim.construction.outline import (
     rounded,
     turned,
 )
-from watchsim.construction.parts import Arms, BalanceWheel, balance_wheel, hollow_back
+from watchsim.construction.parts import (
+    Arms,
+    BalanceWheel,
+    balance_wheel,
+    fork_outline,
+    guard,
+    hollow_back,
+    horn_radius,
+    impulse_pin,
+    safety_roller,
+)
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Edge, Line, Point
 
@@ -189,7 +197,7 @@ class Swiss:
     @property
     def horn_radius(self) -> float:
         """Of the horns about the balance's centre: past the farthest point of the pin's edge."""
-        return lever_parts.horn_radius(self.pin_reach, self.pin_centre, self.pin_radius, self.pin_edge, self.horn_clearance)
+        return horn_radius(self.pin_reach, self.pin_centre, self.pin_radius, self.pin_edge, self.horn_clearance)
 
     @property
     def dart_centre(self) -> float:
@@ -506,7 +514,7 @@ def fork(design: Swiss) -> Loop:
     outside = [(design.stem_half, neck), (0.165 * scale, neck + 0.2 * scale), hip, tip_out]
     tip, slot = polar(design.horn_radius, _horn_bearing(design), centre), (design.slot_width / 2.0, design.slot_bottom)
     radii = [*(share * scale for share in (0.4, 0.2, 0.03, 0.03, MOUTH)), min(0.09 * scale, 0.3 * design.slot_width)]
-    return lever_parts.fork(outside, tip, (centre, design.horn_radius), slot, radii)
+    return fork_outline(outside, tip, (centre, design.horn_radius), slot, radii)
 
 
 def _horn_bearing(design: Swiss) -> float:
