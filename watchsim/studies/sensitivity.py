@@ -7,7 +7,7 @@ taken with two steps; where they disagree the row says so.
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -57,19 +57,20 @@ class Quantity:
     high: float | None = None
 
 
-def fixed_nominal(scene: Scene) -> Scene:
+def fixed_nominal(scene: Scene, leave: Collection[str] = ()) -> Scene:
     """The same scene with springs by their stiffness, damping by its coefficient, and the rate against a frequency that stays.
 
-    With a frequency instead, a heavier balance would be given a stiffer spring, and nothing would go wrong.
+    With a frequency instead, a heavier balance would be given a stiffer spring, and nothing would go wrong. What is varied
+    itself, "frequency" or "q_factor", is to `leave` as it is.
     """
     nominal = nominal_frequency(scene)
     if nominal is not None:
         scene = scene.set("timegrapher.frequency", nominal)
     for i, (spring, entry) in enumerate(zip(scene.springs, scene.source.get("springs", []), strict=True)):
-        if "frequency" in entry:
+        if "frequency" in entry and "frequency" not in leave:
             scene = scene.set(f"springs.{i}.stiffness", spring.stiffness)
     for i, (damping, entry) in enumerate(zip(scene.damping, scene.source.get("damping", []), strict=True)):
-        if "q_factor" in entry:
+        if "q_factor" in entry and "q_factor" not in leave:
             scene = scene.set(f"damping.{i}.viscous", damping.viscous)
     return scene
 

@@ -179,7 +179,7 @@ def _shot(oscillate: ReturnMap, found: Fixed | Lost, brief: bool) -> Cycle:
     if isinstance(found, Lost):
         again = _after_several(oscillate, found.amplitude, finer) if found.trouble == UNSETTLED else None
         return again or _lost(oscillate, found)
-    if brief:
+    if brief and abs(found.slope) < 1.0:
         return _told(loop, parts, glanced(oscillate, found))
     exact = polished(oscillate, found, finer)
     loop.simulated += finer.simulated

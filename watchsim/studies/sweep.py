@@ -92,7 +92,7 @@ def sweep(  # noqa: PLR0913 - options, by name
 
         scene = load(scene)
     axes, asked = axes_from_values(scene, values), outputs_named(outputs)
-    question = Question(scene, steady, _seconds(duration), tolerance, function=measured(asked))
+    question = Question(scene, steady, seconds(duration), tolerance, function=measured(asked))
     return swept(question, axes, asked, chosen(workers, scheduler), folder=folder, resume=resume, progress=progress)
 
 
@@ -181,7 +181,8 @@ def processors() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def _seconds(duration: float | str | None) -> float | None:
+def seconds(duration: float | str | None) -> float | None:
+    """A duration in s, of a number or a text with its unit; ValueError for another."""
     if not isinstance(duration, str):
         return duration
     from watchsim.units import TIME, UnitError, parse

@@ -342,19 +342,31 @@ class Journal:
         if not self.path.is_file():
             return 0
         whole = 0
-        for i, line in enumerate(self.path.read_bytes().splitlines(keepends=True)):
-            try:
-                record = json.loads(line)
-            except ValueError:
-                break
-            if not line.endswith(b"\n"):
-                break
+        for i, (record, size) in enumerate(_records(self.path)):
             if i == 0:
                 _compare(record, plain(study), self.path.parent)
             else:
                 self.rows[int(record.pop("point"))] = record
-            whole += len(line)
+            whole += size
         return whole
+
+
+def read_rows(path: Path) -> tuple[Study, dict[int, Row]]:
+    """What the study of a journal is, and its rows by their numbers; an empty study where nothing whole is in it."""
+    records = [record for record, _ in _records(path)]
+    return (records[0] if records else {}), {int(record.pop("point")): record for record in records[1:]}
+
+
+def _records(path: Path) -> Iterator[tuple[dict[str, Any], int]]:
+    """What its whole lines hold, and how many bytes each has."""
+    for line in path.read_bytes().splitlines(keepends=True):
+        try:
+            record = json.loads(line)
+        except ValueError:
+            return
+        if not line.endswith(b"\n"):
+            return
+        yield record, len(line)
 
 
 def _line(record: Mapping[str, Any]) -> bytes:
