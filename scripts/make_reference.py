@@ -55,7 +55,7 @@ PAGES = {
         ],
     ),
     "studies": (
-        "Limit cycles, sweeps, sensitivities",
+        "Limit cycles, sweeps, sensitivities, tolerances",
         [
             "steady",
             "Cycle",
@@ -63,13 +63,16 @@ PAGES = {
             "watchsim.studies.sweep:Sweep",
             "sensitivity",
             "watchsim.studies.sensitivity:Sensitivity",
+            "tolerance",
+            "ToleranceStudy",
+            "merge",
         ],
     ),
     "pictures": (
         "Plots, movies, sound and pages",
         [
             *("plot_kinematics", "plot_phases", "plot_timeline", "plot_torque", "plot_phase_portrait", "plot_forces"),
-            *("plot_energy", "plot_timing", "plot_tape", "plot_sweep", "plot_sensitivity"),
+            *("plot_energy", "plot_timing", "plot_tape", "plot_sweep", "plot_sensitivity", "plot_tolerance"),
             *("movie", "frame", "show", "sound", "report", "listen", "watchsim.analysis.listen:Heard"),
         ],
     ),

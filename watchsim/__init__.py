@@ -34,6 +34,9 @@ _HOMES = {
     "Cycle": "watchsim.studies.cycle",
     "sweep": "watchsim.studies.sweep",
     "sensitivity": "watchsim.studies.sensitivity",
+    "tolerance": "watchsim.studies.tolerance",
+    "ToleranceStudy": "watchsim.studies.tolerance_result",
+    "merge": "watchsim.studies.tolerance",
     "plot_sweep": "watchsim.render.study_plot",
     "plot_kinematics": "watchsim.render.kinematics_plot",
     "movie": "watchsim.render.movie",
@@ -47,6 +50,7 @@ _HOMES = {
     "plot_torque": "watchsim.render.torque_plot",
     "plot_forces": "watchsim.render.force_plot",
     "plot_sensitivity": "watchsim.render.study_plot",
+    "plot_tolerance": "watchsim.render.tolerance_plot",
     "sound": "watchsim.analysis.sound",
     "listen": "watchsim.analysis.listen",
     "report": "watchsim.pages.report_page",
@@ -87,6 +91,7 @@ if TYPE_CHECKING:
     from watchsim.render.timeline_plot import plot_timeline as plot_timeline
     from watchsim.render.timing_plot import plot_tape as plot_tape
     from watchsim.render.timing_plot import plot_timing as plot_timing
+    from watchsim.render.tolerance_plot import plot_tolerance as plot_tolerance
     from watchsim.render.torque_plot import plot_torque as plot_torque
     from watchsim.results.folder import read_results as read_results
     from watchsim.results.folder import write_results as write_results
@@ -101,6 +106,9 @@ if TYPE_CHECKING:
     from watchsim.studies.sensitivity import sensitivity as sensitivity
     from watchsim.studies.steady import steady as steady
     from watchsim.studies.sweep import sweep as sweep
+    from watchsim.studies.tolerance import merge as merge
+    from watchsim.studies.tolerance import tolerance as tolerance
+    from watchsim.studies.tolerance_result import ToleranceStudy as ToleranceStudy
     from watchsim.verification.verify import verify as verify
 
 

@@ -77,6 +77,8 @@ COMMANDS = (
     "listen",
     "steady",
     "sweep",
+    "tolerance",
+    "merge",
     "verify",
     "bench",
     "export",

@@ -55,6 +55,7 @@ def options(parser: argparse.ArgumentParser) -> None:
         help='what to keep: all, events, statistics, "every 10", or a window "179 s:180 s"; may be given several times',
     )
     parser.add_argument("--duration", metavar="TIME", help='simulated time, such as "5 s" (default: the scene\'s)')
+    parser.add_argument("--sample", metavar="N", type=int, help="of a study of tolerances in place of a scene: that watch")
     parser.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], help="change a value of the scene")
     parser.add_argument("--tol", metavar="X", type=float, help="relative error per step (default: the scene's, 1e-9)")
     parser.add_argument("--method", choices=METHODS, help=f"solver (default {EVENT_DRIVEN})")
@@ -84,7 +85,7 @@ def _run(args: argparse.Namespace, held: contextlib.ExitStack) -> int:
 
     if args.scene is None and args.resume is None:
         raise InputError("run: name a scene file, or the folder that holds scene.toml.")
-    scene = load_scene(args.scene or args.resume, args.set)
+    scene = load_scene(args.scene or args.resume, args.set) if args.sample is None else _sample(args)
     if args.record:
         scene = scene.set("run.record", [_record(what) for what in args.record])
     duration = None if args.duration is None else parse_positive("--duration", args.duration, TIME)
@@ -92,7 +93,8 @@ def _run(args: argparse.Namespace, held: contextlib.ExitStack) -> int:
     _check_windows(scene, scene.duration if duration is None else duration, asked=bool(args.record))
     check_tolerance(args.tol)
     method, start = args.method or EVENT_DRIVEN, None
-    folder = Path(args.output or args.resume or Path("results") / _name(scene))
+    name = _name(scene) if args.sample is None else f"{Path(args.scene).resolve().name}-{args.sample}"
+    folder = Path(args.output or args.resume or Path("results") / name)
     # What is resumed is written whole, with what follows it: nothing is lost where it takes the old one's place.
     goes_on = args.resume is not None and folder.resolve() == Path(args.resume).resolve()
     replace = args.force or goes_on
@@ -112,6 +114,7 @@ def _run(args: argparse.Namespace, held: contextlib.ExitStack) -> int:
     # What a scene promises, it promises as it is written.
     given = {
         "--set": args.set,
+        "--sample": args.sample is not None,
         "--duration": duration not in (None, scene.duration),
         "--tol": args.tol not in (None, scene.tolerance),
         "--step": step,
@@ -138,6 +141,15 @@ def _run(args: argparse.Namespace, held: contextlib.ExitStack) -> int:
         print(report_text(trajectory, summary))
         print(f"Results: {folder}")
     return status(trajectory, summary)
+
+
+def _sample(args: argparse.Namespace) -> Scene:
+    """The watch that a sample of a study is."""
+    from watchsim.scene.load import assignments, changed
+    from watchsim.studies.tolerance import sample_scene
+
+    scene = sample_scene(args.scene or "", args.sample)
+    return changed(scene, assignments(args.set)) if args.set else scene
 
 
 def simulate_with_progress(

@@ -99,11 +99,11 @@ def _sweep(args: argparse.Namespace, scene: Scene, outputs: tuple[Output, ...], 
     for axis in axes:
         points *= len(axis.values)
     question = Question(scene, args.duration is None, duration, args.tol, function=measured(outputs))
-    folder = _folder(args, scene, held)
+    folder = study_folder(args, scene, "sweep", held)
     with stopping.keeping():
-        done = _watched(
+        done = watched(
             lambda progress: swept(
-                question, axes, outputs, _executor(args, points), folder=folder, resume=args.resume, progress=progress
+                question, axes, outputs, executor_of(args, points), folder=folder, resume=args.resume, progress=progress
             )
         )
         write_study(folder, done.numbers(), sweep_table(done), None if args.no_plots else _figure_of_sweep(done))
@@ -119,7 +119,7 @@ def _sweep(args: argparse.Namespace, scene: Scene, outputs: tuple[Output, ...], 
     without = sum(row[outputs[0].column] is None for row in done.rows)
     if without:
         say(f"{without} of {len(done.rows)} points have no {outputs[0].label}; the column message says why.")
-    return _status(done.whole, folder, MISSED if without == len(done.rows) else FINE)
+    return status_of(done.whole, folder, MISSED if without == len(done.rows) else FINE)
 
 
 def _sensitivity(args: argparse.Namespace, scene: Scene, outputs: tuple[Output, ...], held: contextlib.ExitStack) -> int:
@@ -127,11 +127,11 @@ def _sensitivity(args: argparse.Namespace, scene: Scene, outputs: tuple[Output, 
     from watchsim.studies.sensitivity import found
     from watchsim.studies.study_report import sensitivity_table
 
-    folder = _folder(args, scene, held)
+    folder = study_folder(args, scene, "sensitivity", held)
     with stopping.keeping():
-        done = _watched(
+        done = watched(
             lambda progress: found(
-                scene, args.keys or None, outputs, _executor(args, None), args.tol, folder, args.resume, progress
+                scene, args.keys or None, outputs, executor_of(args, None), args.tol, folder, args.resume, progress
             )
         )
         write_study(folder, done.numbers(), sensitivity_table(done), None if args.no_plots else _figure_of_sensitivity(done))
@@ -144,17 +144,19 @@ def _sensitivity(args: argparse.Namespace, scene: Scene, outputs: tuple[Output, 
 
         print(sensitivity_text(done))
         print(f"Results: {folder}")
-    return _status(done.whole, folder, FINE)
+    return status_of(done.whole, folder, FINE)
 
 
-def _status(whole: bool, folder: Path, fine: int) -> int:
+def status_of(whole: bool, folder: Path, fine: int) -> int:
+    """The exit status of a study, `fine` unless it was interrupted, which is reported."""
     if whole:
         return fine
     say(f"Interrupted. Finished points are kept in {folder}; --resume goes on with the others.")
     return stopping.status()
 
 
-def _executor(args: argparse.Namespace, points: int | None) -> Executor:
+def executor_of(args: argparse.Namespace, points: int | None) -> Executor:
+    """Of --workers and --scheduler, for so many points; the solver is compiled once before."""
     from watchsim.jit import is_cached
     from watchsim.studies.sweep import processors
     from watchsim.studies.workers import chosen
@@ -177,7 +179,7 @@ def _compile_once() -> None:
     Loop(load(profiles_dir() / "balance"), 1e-9).warm_up()
 
 
-def _watched(compute: Callable[[Progress], Any]) -> Any:
+def watched(compute: Callable[[Progress], Any]) -> Any:
     """With a progress line; a worker that was killed is no fault of the program."""
     from watchsim.studies.workers import WorkersLost
 
@@ -192,12 +194,11 @@ def _watched(compute: Callable[[Progress], Any]) -> Any:
         progress.close()
 
 
-def _folder(args: argparse.Namespace, scene: Scene, held: contextlib.ExitStack) -> Path:
+def study_folder(args: argparse.Namespace, scene: Scene, what: str, held: contextlib.ExitStack) -> Path:
     """The results folder, made if it is not there; refused where it holds something else."""
     from watchsim.commands.inputs import claimed, secured_folder
 
     name = scene.path.parent.name if scene.path else "scene"
-    what = "sensitivity" if args.sensitivity else "sweep"
     folder = Path(args.output or Path("results") / f"{name}-{what}")
     secured_folder(folder, "results", default=not args.output)
     if folder.is_dir() and any(folder.iterdir()) and not (args.resume or args.force):

@@ -183,8 +183,8 @@ def _bare(run: Trajectory, goal: Goal) -> Path:
 # How does a finished study get onto the disk, beside the rows that are there already?
 
 
-def write_study(folder: Path, numbers: dict[str, Any], table: dict[str, list[Any]], figure: Any) -> None:
-    """sweep.json, sweep.csv, sweep.parquet where pyarrow is installed, the plot as PNG, SVG and PDF.
+def write_study(folder: Path, numbers: dict[str, Any], table: dict[str, list[Any]], figure: Any, name: str = "sweep") -> None:
+    """NAME.json, NAME.csv, NAME.parquet where pyarrow is installed, the plot as PNG, SVG and PDF.
 
     Those of an earlier study are there until then. InputError where numbers and table had to go elsewhere.
     """
@@ -192,20 +192,20 @@ def write_study(folder: Path, numbers: dict[str, Any], table: dict[str, list[Any
     from watchsim.storage.destination import write_elsewhere
     from watchsim.storage.write import write_file
 
-    files = _tables(numbers, table)
+    files = {f"{name}{ending}": write for ending, write in _tables(numbers, table).items()}
     try:
-        for name, write in files.items():
-            write_file(folder / name, write, "the table")
+        for file, write in files.items():
+            write_file(folder / file, write, "the table")
     except OSError as error:
         place = write_elsewhere(folder.name, lambda made: _all_in(made, files), "the table")
         raise InputError(f"{error}.\nThe table was saved, without plots, in {place}") from error
     from watchsim.studies.workers import FIGURES, FILES
 
-    drawn = [] if figure is None or stopping.requested() else [f"sweep{ending}" for ending in FIGURES]
-    for name in drawn:
-        write_file(folder / name, lambda path: save(figure, path), "the plot")
-    for name in set(FILES) - {*files, *drawn}:
-        _remove(folder / name)
+    drawn = [] if figure is None or stopping.requested() else [f"{name}{ending}" for ending in FIGURES]
+    for file in drawn:
+        write_file(folder / file, lambda path: save(figure, path), "the plot")
+    for file in set(FILES) - {*files, *drawn}:
+        _remove(folder / file)
 
 
 def _tables(numbers: dict[str, Any], table: dict[str, list[Any]]) -> dict[str, Callable[[Path], object]]:
@@ -214,10 +214,10 @@ def _tables(numbers: dict[str, Any], table: dict[str, list[Any]]) -> dict[str, C
 
     text, rows, parquet = json_text(numbers), csv_text(table), parquet_writer(table)
     files: dict[str, Callable[[Path], object]] = {
-        "sweep.json": lambda path: path.write_text(text, encoding="utf-8"),
-        "sweep.csv": lambda path: path.write_text(rows, encoding="utf-8"),
+        ".json": lambda path: path.write_text(text, encoding="utf-8"),
+        ".csv": lambda path: path.write_text(rows, encoding="utf-8"),
     }
-    return files if parquet is None else {**files, "sweep.parquet": parquet}
+    return files if parquet is None else {**files, ".parquet": parquet}
 
 
 def _remove(path: Path) -> None:

@@ -10,7 +10,7 @@ import difflib
 import math
 import time
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from watchsim.analysis.timing import mean_over
@@ -25,6 +25,7 @@ from watchsim.simulation.simulate import simulate
 from watchsim.simulation.state import Stop
 from watchsim.studies.all_cycles import judged
 from watchsim.studies.axes import Value
+from watchsim.studies.section import Loop, freed_start
 from watchsim.studies.steady import steady
 
 
@@ -116,6 +117,10 @@ def function_of(scene: Scene, few: int | None = None) -> Row:
     lock, total_lock, run, draw (the less of both ends), drop: the least; freedom of the lever on its bank: the largest.
     """
     found = measure(scene, few=few or None)
+    if found.pallets is None and found.parts is not None:  # a body that was moved a little may overlap where it starts
+        loop = Loop(scene, scene.tolerance)
+        freed = freed_start(loop.compiled, loop.options)
+        found = found if freed is None else measure(scene, replace(loop.compiled, q=freed), few or None)
     row: Row = {}
     for name, fields in PARTS.items():
         each = [getattr(one, field) for one in found.pallets or () for field in fields]

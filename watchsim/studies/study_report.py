@@ -9,10 +9,12 @@ from pathlib import Path
 from typing import Any
 
 from watchsim.results.tables import cell
-from watchsim.studies.axes import Axis
-from watchsim.studies.point import Output
+from watchsim.studies.axes import Axis, slug
+from watchsim.studies.point import OUTPUTS, Output
+from watchsim.studies.sampling import plain_values
 from watchsim.studies.sensitivity import Effect, Sensitivity
 from watchsim.studies.sweep import Sweep
+from watchsim.studies.tolerance_result import ToleranceStudy, failing
 from watchsim.units import to
 
 Table = dict[str, list[Any]]  # column -> values
@@ -69,6 +71,8 @@ def sensitivity_table(found: Sensitivity) -> Table:
 
 LONGEST = 60  # rows that are printed whole
 ENDS = 10  # of a longer table: rows at each end
+MOST_TOLD, LEAST_TOLD = 6, 0.005  # contributions in one line: how many, and the least of them
+WHETHER = {"ticks": "whether it ticks", "good": "whether it is good"}
 DECIMALS = {"amplitude_deg": 3, "rate_s_per_d": 3, "beat_error_ms": 4, "period_s": 9, "multiplier": 6}
 
 
@@ -91,6 +95,56 @@ def sensitivity_text(found: Sensitivity) -> str:
         body.append([row["key"], f"{row['value']:.5g}{unit}", row["change"], *effects, row["message"]])
     level = f"{found.cycle.amplitude_deg:.3f}°, {found.cycle.rate_s_per_d:.3f} s/d, {found.cycle.beat_error_ms:.4f} ms"
     return "\n".join([f"{found.title}: {level}".replace(" -", " −"), *_table(head, body)])
+
+
+def tolerance_table(found: ToleranceStudy) -> Table:
+    """One line for each sample: what it was made to (SI), what it gives, and what is wrong with it."""
+    numbers = list(found.numbers_of)
+    values = [plain_values(one) for one in found.plan.changes(numbers)]
+    rows = [found.rows[number] for number in numbers]
+    units = {one.key: one.dimension.si for one in found.plan.scene.tolerances}
+    table: Table = {"sample": numbers}
+    for key in values[0] if values else ():
+        unit = units.get(key, units.get(key.rpartition(".")[0], ""))
+        table[f"{key}_{slug(unit)}" if unit else key] = [one[key] for one in values]
+    table |= {column: [row.get(column) for row in rows] for column in found.outputs}
+    return {**table, "verdict": [row["verdict"] for row in rows], "wrong": [failing(found.plan, row) for row in rows]}
+
+
+def tolerance_text(found: ToleranceStudy) -> str:
+    """For people: the yield, the spread of every output, what contributes, and what fails."""
+    lines = [found.title, f"  {found.message}."]
+    for name in ("controlled", "predicted", "weights"):
+        if name in found.shares:
+            share = found.shares[name]
+            ends = "" if share.low == share.high else f" ({100 * share.low:.4g} to {100 * share.high:.4g} %)"
+            lines.append(f"  by {share.by}: {100 * share.value:.4g} %{ends}")
+    by_column = {one.column: one for one in OUTPUTS.values()}
+    head = ["output", "mean", "sigma", "0.1 %", "99.9 %", "Cp", "Cpk", "linear sigma", "worst case", ""]
+    body = []
+    for column, one in found.outputs.items():
+        low, high = _short(one.linear_low), _short(one.linear_high)
+        ratios = [_short(ratio) for ratio in (one.cp, one.cpk)]
+        spread = [_short(number) for number in (one.mean, one.sigma, *(one.quantiles[q] for q in ("0.00135", "0.99865")))]
+        worst = f"{low} to {high}" if low else ""
+        body.append([_title(by_column[column]), *spread, *ratios, _short(one.linear_sigma), worst, one.remark])
+    lines += _table(head, body)
+    for name, each in found.contributions.items():
+        known = f", {100.0 * found.explained[name]:.3g} % explained" if name in found.explained else ""
+        told = [
+            f"{one.key} {100.0 * one.total:.3g} %" if one.total is not None else f"{one.key} (rank correlation {one.rank:.2f})"
+            for one in each[:MOST_TOLD]
+            if one.total is None or one.total >= LEAST_TOLD
+        ]
+        label = by_column[name].label if name in by_column else WHETHER[name]
+        lines.append(f"  {label}{known}: {', '.join(told) or 'nothing stands out'}")
+    lines += [f"  {words}: {number}" for words, number in found.failures.items()]
+    split = ", ".join(f"{name} {1e3 * value:.3g} ms" for name, value in found.seconds.items())
+    return "\n".join([*lines, f"  a sample takes {1e3 * sum(found.seconds.values()):.3g} ms of one processor: {split}"])
+
+
+def _short(value: float | None) -> str:
+    return "" if value is None else f"{value:.5g}".replace("-", "−")
 
 
 def _head(axis: Axis) -> str:

@@ -39,6 +39,7 @@ from watchsim.studies.yields import (
 from watchsim.units import known_unit
 
 SHOWN = 20  # of the worst samples
+LEAST_KNOWN = 32  # samples with an output, for what contributes to it
 QUANTILES = (0.00135, 0.05, 0.5, 0.95, 0.99865)
 
 
@@ -351,7 +352,7 @@ def _contributions(
     explained: dict[str, float] = {}
     for name, values in wanted.items():
         there = np.isfinite(values)
-        if there.sum() < 4 or float(np.ptp(values[there])) == 0.0:
+        if there.sum() < LEAST_KNOWN or float(np.ptp(values[there])) == 0.0:
             continue
         made = indices(basis, values, owner, samples.sequence) if basis is not None else None
         ranks = _ranks(samples.deviations[there], values[there])
@@ -410,6 +411,15 @@ def _worst(samples: Samples) -> Iterable[dict[str, Any]]:
         yield {"sample": int(samples.numbers[i]), "why": f"{why}: {message}" if message else why}
 
 
+def apart(samples: Samples, words: str) -> tuple[Floats, Floats]:
+    """How the watches with that failure differ from all others on average, in sigmas and in SI, by draw."""
+    mine = np.array([one == words for one in samples.wrong])
+    off = samples.deviations
+    differ: Floats = off[mine].mean(axis=0) - (off[~mine] if (~mine).any() else off).mean(axis=0)
+    sigma = _range(samples.plan.space)[:, 2]
+    return differ / np.where(sigma > 0.0, sigma, 1.0), differ
+
+
 def _message(samples: Samples, share: Share) -> str:
     """The most probable failure, and how such watches differ from the others, for whoever makes them."""
     count = len(samples.rows)
@@ -421,18 +431,15 @@ def _message(samples: Samples, share: Share) -> str:
     if not kinds:
         return f"{first}; none of {count} samples fails"
     words, number = kinds.most_common(1)[0]
-    mine = np.array([one == words for one in samples.wrong])
-    space, off = samples.plan.space, samples.deviations
-    others = off[~mine] if (~mine).any() else off
-    sigma = _range(space)[:, 2]
-    away = (off[mine].mean(axis=0) - others.mean(axis=0)) / np.where(sigma > 0.0, sigma, 1.0)
+    space = samples.plan.space
+    away, differ = apart(samples, words)
     told = []
     for j in np.argsort(-np.abs(away), kind="stable")[:2]:
         one = space.tolerances[space.draws[j].members[0]]
         if abs(away[j]) * np.sqrt(number) > 3.0:
-            size = abs(float(off[mine][:, j].mean() - others[:, j].mean())) / known_unit(one.unit).factor
+            size = abs(differ[j]) / known_unit(one.unit).factor
             side = "larger" if away[j] > 0.0 else "smaller"
             gap = "" if one.unit in ("", "°") else " "
             told.append(f"{space.draws[j].name} is {size:.2g}{gap}{one.unit} {side}")
     how = f"; in these, on average, {' and '.join(told)} than in the others" if told else ""
-    return f"{first}. Most failures: {words} ({number} of {int(mine.size - samples.good.sum())}){how}"
+    return f"{first}. Most failures: {words} ({number} of {int((~samples.good).sum())}){how}"

@@ -275,7 +275,8 @@ def _work(number: int, question: Question, changes: dict[str, float | str]) -> t
 
 NAME = "rows.jsonl"
 FIGURES = (".png", ".svg", ".pdf")
-FILES = ("sweep.json", "sweep.csv", "sweep.parquet", *(f"sweep{ending}" for ending in FIGURES))  # made of the rows
+STUDIES = ("sweep", "tolerance")  # the names of what is made of the rows
+FILES = tuple(f"{name}{ending}" for name in STUDIES for ending in (".json", ".csv", ".parquet", ".html", *FIGURES))
 
 Study = dict[str, Any]
 

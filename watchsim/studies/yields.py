@@ -7,6 +7,7 @@ t); where hardly any sample fails, or hardly any is good, it is not known well e
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -60,7 +61,7 @@ def replicated(values: Floats, sequence: Ints) -> tuple[float, float]:
         return float(values.mean()), np.inf
     means = np.array([values[sequence == group].mean() for group in groups])
     t = float(stdtrit(len(groups) - 1, 0.5 + 0.5 * CONFIDENCE))
-    return float(values.mean()), t * float(means.std(ddof=1)) / np.sqrt(len(groups))
+    return float(values.mean()), t * float(means.std(ddof=1)) / math.sqrt(len(groups))
 
 
 def share_of(good: Flags, sequence: Ints) -> Share:
@@ -69,7 +70,7 @@ def share_of(good: Flags, sequence: Ints) -> Share:
     value, half = replicated(good.astype(float), sequence)
     if min(number, count - number) < FEW or not np.isfinite(half):
         return Share(value, *clopper_pearson(number, count), "Clopper and Pearson")
-    return Share(value, max(0.0, value - half), min(1.0, value + half), "replications")
+    return Share(value, max(0.0, float(value - half)), min(1.0, float(value + half)), "replications")
 
 
 def controlled(good: Flags, predicted: Flags, truth: float, sequence: Ints) -> Share:
@@ -81,13 +82,14 @@ def controlled(good: Flags, predicted: Flags, truth: float, sequence: Ints) -> S
     spread = float(known.var())
     factor = float(np.cov(real, known, bias=True)[0, 1]) / spread if spread else 0.0
     value, half = replicated(real - factor * (known - truth), sequence)
-    return Share(min(1.0, max(0.0, value)), max(0.0, value - half), min(1.0, value + half), "control variate")
+    return Share(min(1.0, max(0.0, value)), max(0.0, float(value - half)), min(1.0, float(value + half)), "control variate")
 
 
 def weighted(good: Flags, weights: Floats, sequence: Ints) -> Share:
     """The share of good watches from samples of which failing ones are more frequent than in truth, by `weights`."""
     value, half = replicated(weights * ~good, sequence)
-    return Share(1.0 - value, max(0.0, 1.0 - value - half), min(1.0, 1.0 - value + half), "importance sampling")
+    low, high = float(max(0.0, 1.0 - value - half)), float(min(1.0, 1.0 - value + half))
+    return Share(1.0 - value, low, high, "importance sampling")
 
 
 # The linear prediction knows where failures begin.
