@@ -16,10 +16,11 @@ from scipy.optimize import brentq
 from shapely import Polygon
 from shapely.affinity import rotate, translate
 
+from watchsim.cli import main
 from watchsim.construction.design import drawing_of
 from watchsim.construction.registry import design
 from watchsim.construction.swiss_lever import drop_after_recoil, sheets, swiss
-from watchsim.construction.swiss_lever_outlines import Swiss, crescent_needed
+from watchsim.construction.swiss_lever_outlines import Swiss
 from watchsim.designs import Drawn
 from watchsim.mechanism.overlap import overlap_faults
 
@@ -72,9 +73,9 @@ def test_dimensions_of_other_designs_are_those_measured(chosen, tmp_path):
     checked(chosen, tmp_path)
 
 
-def test_the_crescent_needed_is_what_the_dart_sweeps_beside_the_jewel():
+def test_the_crescent_needed_is_what_the_dart_sweeps_beside_the_jewel(tmp_path, capsys):
     """Jewel and dart turned about the lever's staff as complex numbers; with play, breadth and rounding of the edge."""
-    lever = Swiss()
+    lever = swiss(LEVER.chosen({}))
     staff, farthest = lever.lever_to_balance, 0.0
     for k in range(61):
         a = math.radians(lever.bank * k / 60)
@@ -84,7 +85,9 @@ def test_the_crescent_needed_is_what_the_dart_sweeps_beside_the_jewel():
             beside = abs(math.degrees(cmath.phase(dart / jewel)))
             farthest = max(farthest, beside + math.degrees((lever.dart_tip + 0.02 * lever.lever_scale) / abs(dart)))
     play = math.degrees((lever.slot_width - 2.0 * lever.pin_radius) / lever.pin_reach)
-    assert crescent_needed(lever) == pytest.approx(farthest + play, rel=1e-9)
+    assert main(["new", "swiss_lever", "--crescent", "12°", "-o", str(tmp_path / "lever")]) == 2
+    assert f"must be at least {farthest + play:.4g}°: the dart enters the roller" in capsys.readouterr().err
+    assert not (tmp_path / "lever").exists()
 
 
 REFUSED = [

@@ -178,3 +178,45 @@ def test_what_cannot_be_is_a_fault(tmp_path) -> None:
     assert "from its pivot" in faults('stiffness = "1 N/m"\nbetween = ["lever"]')["line_springs.3"]
     assert "leave one out" in faults(points + 'between = ["lever"]\nlength = "1 mm"\ntension = "1 N"')["line_springs.3.tension"]
     assert "shorter than nothing" in faults(points + 'between = ["lever"]\ntension = "1 N"')["line_springs.3.tension"]
+
+
+GEARED = """
+[scene]
+title = "two bodies that turn together, one of them on a line spring"
+[bodies.first]
+inertia = "1 g·cm²"
+angle = "20°"
+[bodies.second]
+position = ["30 mm", "0 mm"]
+inertia = "0.2 g·cm²"
+[[gears]]
+between = ["first", "second"]
+ratio = -3.0
+[[line_springs]]
+between = ["{held}"]
+points = [["4 mm", "1 mm"], ["12 mm", "9 mm"]]
+stiffness = "20 N/m"
+length = "3 mm"
+[run]
+duration = "0.2 s"
+tolerance = 1e-12
+"""
+
+
+@pytest.mark.parametrize(("held", "place", "ratio"), [("first", 0.0, 1.0), ("second", 30e-3, -3.0)])
+def test_a_line_spring_turns_what_is_geared_to_its_body_by_the_ratio(tmp_path, held, place, ratio) -> None:
+    """By Lagrange's equation of the one coordinate, the torque being the derivative of the spring's energy."""
+    angle = {"first": math.radians(20.0), "second": 0.0}[held]
+
+    def length(turned: float) -> float:
+        return math.dist(np.array([place, 0.0]) + rotated(angle + ratio * turned, (4e-3, 1e-3)), (12e-3, 9e-3))
+
+    def rates(_t: float, y: np.ndarray) -> list[float]:
+        slope = (length(y[0] + 1e-5) - length(y[0] - 1e-5)) / 2e-5
+        return [y[1], -20.0 * (length(y[0]) - 3e-3) * slope / (1e-7 + 9.0 * 0.2e-7)]
+
+    turned = solve_ivp(rates, (0.0, 0.2), [0.0, 0.0], method="DOP853", rtol=1e-11, atol=1e-12).y[0, -1]
+    run = ws.simulate(read(tmp_path, GEARED.format(held=held)))
+    first, second = run.q[-1] - run.q[0]
+    assert abs(turned) > 0.01 and first == pytest.approx(turned, abs=1e-6)
+    assert second == pytest.approx(-3.0 * first, abs=1e-12) and run.energy["residual_relative"] < 1e-9
