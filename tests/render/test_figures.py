@@ -208,6 +208,23 @@ def test_dots_of_timing_are_the_beats(run: ws.Trajectory) -> None:
         assert t[order] == pytest.approx(found.t) and y[order] == pytest.approx(values, nan_ok=True)
 
 
+@pytest.mark.slow
+def test_each_column_of_a_long_record_keeps_its_first_last_least_and_largest_dot() -> None:
+    """1500 columns divide the time of a panel evenly: by plain counting, one column after the other."""
+    scene = ws.load(ws.profiles_dir() / "balance").set("damping.0.q_factor", 5000.0)
+    run = ws.simulate(scene, duration=2500.0)
+    figure, found = ws.plot_timing(run), ws.beats(run)
+    own = np.flatnonzero(found.end_at > found.start_at)
+    t, y = found.t[own], found.amplitude_deg[own]
+    assert len(t) > 6000
+    place = np.minimum(np.floor(1500 * (t - t[0]) / (t[-1] - t[0])), 1499)
+    expected = set()
+    for k in range(1500):
+        inside = np.flatnonzero(place == k)
+        expected |= {t[i] for i in (inside[0], inside[-1], inside[np.argmin(y[inside])], inside[np.argmax(y[inside])])}
+    assert set(named(figure, "amplitude forward")[1].get_data()[0]) == expected
+
+
 def test_pictures_stand_at_the_middle_of_each_phase(run: ws.Trajectory) -> None:
     figure = ws.plot_timeline(run)
     beats_shown = shown_beats(run)[-2:]
