@@ -55,7 +55,7 @@ PAGES = {
         ],
     ),
     "studies": (
-        "Limit cycles, sweeps, sensitivities, tolerances",
+        "Limit cycles, sweeps, sensitivities, tolerances, better scenes",
         [
             "steady",
             "Cycle",
@@ -66,13 +66,15 @@ PAGES = {
             "tolerance",
             "ToleranceStudy",
             "merge",
+            "improve",
+            "watchsim.studies.improve:Better",
         ],
     ),
     "pictures": (
         "Plots, movies, sound and pages",
         [
             *("plot_kinematics", "plot_phases", "plot_timeline", "plot_torque", "plot_phase_portrait", "plot_forces"),
-            *("plot_energy", "plot_timing", "plot_tape", "plot_sweep", "plot_sensitivity", "plot_tolerance"),
+            *("plot_energy", "plot_timing", "plot_tape", "plot_sweep", "plot_sensitivity", "plot_tolerance", "plot_front"),
             *("movie", "frame", "show", "sound", "report", "listen", "watchsim.analysis.listen:Heard"),
         ],
     ),

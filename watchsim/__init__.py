@@ -37,6 +37,7 @@ _HOMES = {
     "tolerance": "watchsim.studies.tolerance",
     "ToleranceStudy": "watchsim.studies.tolerance_result",
     "merge": "watchsim.studies.tolerance",
+    "improve": "watchsim.studies.improve",
     "plot_sweep": "watchsim.render.study_plot",
     "plot_kinematics": "watchsim.render.kinematics_plot",
     "movie": "watchsim.render.movie",
@@ -49,6 +50,7 @@ _HOMES = {
     "plot_phase_portrait": "watchsim.render.phase_portrait",
     "plot_torque": "watchsim.render.torque_plot",
     "plot_forces": "watchsim.render.force_plot",
+    "plot_front": "watchsim.render.study_plot",
     "plot_sensitivity": "watchsim.render.study_plot",
     "plot_tolerance": "watchsim.render.tolerance_plot",
     "sound": "watchsim.analysis.sound",
@@ -86,6 +88,7 @@ if TYPE_CHECKING:
     from watchsim.render.movie import movie as movie
     from watchsim.render.phase_bands import plot_phases as plot_phases
     from watchsim.render.phase_portrait import plot_phase_portrait as plot_phase_portrait
+    from watchsim.render.study_plot import plot_front as plot_front
     from watchsim.render.study_plot import plot_sensitivity as plot_sensitivity
     from watchsim.render.study_plot import plot_sweep as plot_sweep
     from watchsim.render.timeline_plot import plot_timeline as plot_timeline
@@ -103,6 +106,7 @@ if TYPE_CHECKING:
     from watchsim.simulation.state import Stop as Stop
     from watchsim.simulation.trajectory import Trajectory as Trajectory
     from watchsim.studies.cycle import Cycle as Cycle
+    from watchsim.studies.improve import improve as improve
     from watchsim.studies.sensitivity import sensitivity as sensitivity
     from watchsim.studies.steady import steady as steady
     from watchsim.studies.sweep import sweep as sweep

@@ -79,6 +79,7 @@ COMMANDS = (
     "sweep",
     "tolerance",
     "merge",
+    "improve",
     "verify",
     "bench",
     "export",

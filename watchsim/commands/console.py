@@ -7,6 +7,7 @@ import dis
 import errno
 import io
 import json
+import math
 import os
 import platform
 import shlex
@@ -112,8 +113,10 @@ class Progress:
             return
         self._told = now
         elapsed = now - self._start
-        left = elapsed * (whole - done) / done if done > 0.0 else 0.0
+        left = elapsed * (whole - done) / done if done > 0.0 and whole < math.inf else 0.0
         words = f"\r{self._words}  {done:.4g} of {whole:.4g}   {_clock(elapsed)} elapsed, {_clock(left)} left"
+        if whole == math.inf:  # nobody knows how many there will be
+            words = f"\r{self._words}  {done:.4g}   {_clock(elapsed)} elapsed"
         self._show(f"{words:<79}")
 
     def close(self) -> None:

@@ -19,6 +19,7 @@ from watchsim.render import style
 from watchsim.render.palette import FAINT, GRID, INK
 from watchsim.render.style import SERIES
 from watchsim.studies.axes import Axis
+from watchsim.studies.improve import Better
 from watchsim.studies.point import Output
 from watchsim.studies.sensitivity import Effect, Sensitivity
 from watchsim.studies.sweep import Sweep
@@ -60,6 +61,43 @@ def plot_sweep(sweep: Sweep, width: float = style.FULL) -> Figure:
         )
         made.legend(handles, labels, title=axis_label(other), **look, **where)
     return made
+
+
+def plot_front(better: Better, width: float = style.FULL) -> Figure:
+    """The front of two goals: designs of which none is better in both, the one that was chosen, and the scene as it was.
+
+    ValueError where there is no front, or one of more than two goals.
+    """
+    if len(better.goals) != 2 or not better.front:
+        raise ValueError("only a front of two goals can be drawn")
+    first, second = (one.output for one in better.goals)
+    made = style.figure(width, 2.0 * TALL + REST, layout="constrained")
+    axes = made.subplots()
+    made.suptitle(style.cut(better.title), x=0.01, ha="left", fontsize=style.TITLE, weight="bold", color=INK)
+    x, y = (np.array([_of_front(better, one, design) for design in better.front]) for one in (first, second))
+    axes.plot(x, y, color=SERIES[0], marker="o", markersize=3.5, linewidth=style.CURVE, label="front")
+    for k, label, colour, mark in ((0, "as it was", FAINT, "s"), (1, "chosen", style.BAD, "D")):
+        x_at, y_at = (_either(better, one, k) for one in (first, second))
+        if x_at is not None and y_at is not None:
+            axes.plot([x_at], [y_at], color=colour, marker=mark, markersize=5.0, linestyle="none", label=label)
+    axes.set_xlabel(f"{output_label(first)}, {better.goals[0].way}")
+    axes.set_ylabel(f"{output_label(second)}, {better.goals[1].way}")
+    style.dress(axes, grid="both")
+    axes.ticklabel_format(useOffset=False)
+    axes.legend(frameon=False, fontsize=style.SMALL, labelcolor=INK)
+    return made
+
+
+def _of_front(better: Better, output: Output, design: Mapping[str, float]) -> float:
+    """In the unit of the output, which is a result or a number that was varied."""
+    knob = next((one for one in better.knobs if one.key == output.name), None)
+    return design[output.column] if knob is None else to(design[knob.key], knob.unit)
+
+
+def _either(better: Better, output: Output, k: int) -> float | None:
+    """As it was (0), or as it is now (1)."""
+    knob = next((one for one in better.knobs if one.key == output.name), None)
+    return better.values[output.column][k] if knob is None else to(better.keys[knob.key][k], knob.unit)
 
 
 def output_label(output: Output) -> str:

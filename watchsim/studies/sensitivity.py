@@ -97,7 +97,7 @@ def quantity_at(scene: Scene, key: str, value: Any) -> Quantity | None:
         number = parse(value, dimension)
     except UnitError:
         return None
-    change, words = _change(number, dimension)
+    change, words = change_of(number, dimension)
     return Quantity(key, number, dimension, _step(number, dimension), change, words, *_bounds(scene, path))
 
 
@@ -141,7 +141,8 @@ def _step(value: float, dimension: Dimension) -> float:
     return RELATIVE * abs(value) if value else SMALL
 
 
-def _change(value: float, dimension: Dimension) -> tuple[float, str]:
+def change_of(value: float, dimension: Dimension) -> tuple[float, str]:
+    """What a maker may get wrong in such a value, SI and in words."""
     if dimension is LENGTH:
         return USUAL_LENGTH, "10 µm"
     if dimension is ANGLE:

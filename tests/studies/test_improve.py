@@ -1,0 +1,184 @@
+"""Are goals reached, limits kept, and what holds a design back named, where the answer is known in closed form?"""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import watchsim as ws
+from watchsim.cli import main
+from watchsim.scene.errors import SceneError
+from watchsim.scene.rewrite import rewritten, write_scene
+
+SWISS = ws.profiles_dir() / "swiss_lever"
+HERE = Path(__file__).parent
+
+PENDULUM = """
+[scene]
+schema  = 1
+gravity = ["0 m/s²", "-9.81 m/s²"]
+[bodies.bar]               # its comments stay
+circle         = "1 mm"
+mass           = "0.2 kg"
+inertia        = "{inertia} kg·m²"   # about its pivot
+centre_of_mass = ["0 mm", "-100 mm"]
+angle          = "1°"
+[run]
+duration  = "4 s"
+tolerance = 1e-12
+"""
+DECAY = """
+[scene]
+schema = 1
+[bodies.wheel]
+circle  = "1 mm"
+inertia = "2 g·mm²"        # what is varied
+angle   = "0.5°"
+[[springs]]
+body      = "wheel"
+stiffness = "3 µN·m/rad"
+[[damping]]
+body    = "wheel"
+viscous = "0 nN·m·s/rad"
+[run]
+duration  = "2 s"
+tolerance = 1e-12
+"""
+
+
+def scene_of(folder, text):
+    (folder / "scene.toml").write_text(text, encoding="utf-8")
+    return ws.load(folder)
+
+
+def test_a_root_of_a_closed_form(tmp_path):
+    """T = 2π √(I/k)."""
+    scene = scene_of(tmp_path, DECAY)
+    found = ws.improve(scene, {"bodies.wheel.inertia": None}, "period = 0.2 s", duration=2.0)
+    assert found.found and found.keys["bodies.wheel.inertia"][1] == pytest.approx(3e-6 * (0.2 / math.tau) ** 2, rel=1e-9)
+    assert ws.improve(scene, {"bodies.wheel.inertia": ("1 g·mm²", "1.5 g·mm²")}, "period = 0.2 s", duration=2.0).message == (
+        "period comes to 0.140496 s at bodies.wheel.inertia = 1.5 g·mm², where its limits end"
+    )
+
+
+def test_a_constrained_optimum_of_a_closed_form(tmp_path):
+    """The heaviest wheel that is still fast enough: at the limit I = k (T/2π)², where T grows by T/2 for each unit of ln I."""
+    scene = scene_of(tmp_path, DECAY)
+    vary = {"bodies.wheel.inertia": ("1 g·mm²", "9 g·mm²"), "springs.0.stiffness": ("2 µN·m/rad", "4 µN·m/rad")}
+    found = ws.improve(scene, vary, "inertia max", ["period <= 0.2 s"], duration=2.0)
+    exact = 4e-6 * (0.2 / math.tau) ** 2
+    assert found.found and found.keys["bodies.wheel.inertia"][1] == pytest.approx(exact, rel=1e-6)
+    assert found.keys["springs.0.stiffness"][1] == pytest.approx(4e-6, rel=1e-6)
+    assert found.value == pytest.approx(1e9 * exact, rel=1e-6)
+    by = {line.split(" ")[0]: line for line in found.active}
+    assert set(by) == {"period", "springs.0.stiffness"}
+    # dI = 2 I dT/T and I dk/k: 1 % more of each gives 2 % and 1 % more.
+    assert f"0.002 s more would give {0.02 * 1e9 * exact:.3g} g·mm² more" in by["period"]
+    assert f"1 % more would give {0.01 * 1e9 * exact:.3g} g·mm² more" in by["springs.0.stiffness"]
+
+
+def test_the_least_change(tmp_path):
+    """T = 2π √(I / m g h) (1 + θ²/16): with two numbers for one period, the design that changes least."""
+    scene = scene_of(tmp_path, PENDULUM.format(inertia=4e-3))
+    least = ws.improve(
+        scene,
+        {"bodies.bar.centre_of_mass.1": ("-200 mm", "-50 mm"), "bodies.bar.mass": ("0.1 kg", "0.4 kg")},
+        "period = 0.8 s",
+        duration=4.0,
+    )
+    m, h = least.keys["bodies.bar.mass"][1], -least.keys["bodies.bar.centre_of_mass.1"][1]
+    around = 1.0 + math.radians(1.0) ** 2 / 16.0
+    product = 4e-3 * (math.tau * around / 0.8) ** 2 / 9.81
+    assert m * h == pytest.approx(product, rel=1e-6)
+    # The least change: the distance in parts of the ranges is stationary along m h = const.
+    x, y = (m - 0.2) / 0.3, (h - 0.1) / 0.15
+    assert x / 0.3 * m == pytest.approx(y / 0.15 * h, rel=1e-3)
+
+
+def test_a_front_of_two_goals(tmp_path):
+    """Heavy and fast: along the front the stiffness is at its limit, I = k (T/2π)²."""
+    vary = {"bodies.wheel.inertia": ("1 g·mm²", "9 g·mm²"), "springs.0.stiffness": ("2 µN·m/rad", "4 µN·m/rad")}
+    found = ws.improve(scene_of(tmp_path, DECAY), vary, ["inertia max", "period min"], points=5, duration=2.0)
+    assert len(found.front) >= 6
+    for one in found.front:
+        assert one["springs.0.stiffness"] == pytest.approx(4e-6, rel=1e-6)
+        assert one["bodies.wheel.inertia"] == pytest.approx(4e-6 * (one["period_s"] / math.tau) ** 2, rel=1e-6)
+    assert np.all(np.diff([one["period_s"] for one in found.front]) < 0.0)
+    ws.plot_front(found).savefig(tmp_path / "front.png")
+
+
+def test_the_amplitude_of_a_watch_by_its_drive(tmp_path, capsys):
+    out = tmp_path / "better"
+    assert (
+        main(["improve", str(SWISS), "--vary", "torques.0.value", "--goal", "amplitude = 290°", "--json", "-o", str(out)]) == 0
+    )
+    found = json.loads(capsys.readouterr().out)
+    assert set(found) >= {"found", "goal", "value", "keys", "active", "evaluations", "wall_s"} and found["evaluations"] < 15
+    cycle = ws.steady(out)
+    assert cycle.amplitude_deg == pytest.approx(290.0, abs=1e-7)
+    text, before = (out / "scene.toml").read_text(encoding="utf-8"), (SWISS / "scene.toml").read_text(encoding="utf-8")
+    changed = [(a, b) for a, b in zip(before.splitlines(), text.splitlines(), strict=True) if a != b]
+    assert len(changed) == 1 and changed[0][1].startswith('value = "-1.078')
+
+
+@pytest.mark.slow
+def test_ten_starts_end_in_the_same_design():
+    scene = ws.designs.swiss_lever().scene()
+    vary = {"lock": ("1.2°", "3°"), "draw": ("9°", "15°"), "drop": ("0.9°", "1.8°")}
+    found = ws.improve(scene, vary, "amplitude max", ["total_lock >= 1.9°"], starts=10)
+    assert found.starts == (10, 10)
+    assert found.values["total_lock_deg"][1] == pytest.approx(1.9, abs=1e-5)
+
+
+@pytest.mark.slow
+def test_designs_that_do_not_tick_turn_the_search_back():
+    """Half of the range knocks: the largest amplitude is at the edge of what does not."""
+    scene = ws.load(ws.profiles_dir() / "bench_lever")
+    found = ws.improve(scene, {"torques.0.value": ("-12 µN·m", "-5 µN·m")}, "amplitude max")
+    assert found.found and found.without > 0 and found.value > ws.steady(scene).amplitude_deg + 10.0
+
+
+def test_a_file_keeps_its_comments(tmp_path):
+    scene = scene_of(tmp_path, PENDULUM.format(inertia=4e-3))
+    text = rewritten(scene, {"bodies.bar.centre_of_mass.1": "-123 mm", "bodies.bar.mass": "0.3 kg", "run.record": "all"})
+    assert '["0 mm", "-123 mm"]' in text and 'mass           = "0.3 kg"' in text and "its comments stay" in text
+    assert 'record = "all"' in text
+    made = ws.designs.swiss_lever(lock="1.7°").scene()
+    (tmp_path / "new").mkdir()
+    write_scene(made, {"design.lock": "1.8°", "contacts.0.friction": 0.1}, tmp_path / "new")
+    again = ws.load(tmp_path / "new")
+    assert again.source["design"]["lock"] == "1.8°" and again.contacts[0].friction == 0.1
+
+
+@pytest.mark.parametrize(
+    ("arguments", "all_of"),
+    [
+        (["lck=1°:2°", "--goal", "amplitude max"], ["lck"]),
+        (["torques.0.value=-1 µN·m:-2 µN·m", "contacts.0.friction=0.1:0.2", "--goal", "beauty max"], ["first limit", "beauty"]),
+        (["contacts.0.friction=0.1:0.2", "--goal", "amplitude = 290", "--keep", "rate >> 1"], ["needs a unit", "rate >> 1"]),
+        (["contacts.0.friction=0.1", "--goal", "amplitude max", "--workers", "0"], ["KEY=FROM:TO", "--workers"]),
+        (["contacts.0.friction=0.1:0.2"], ["name a goal"]),
+        (["contacts.0.friction=0.1:0.2", "--goal", "amplitude max", "--starts", "0", "--method", "luck"], ["starts", "luck"]),
+        (["--goal", "amplitude max"], ["name what may be changed"]),
+        (
+            ["contacts.0.friction=0.1:0.2", "--goal", "amplitude max", "--keep", "lock >= 2°", "--keep", "lock <= 1°"],
+            ["above 2"],
+        ),
+    ],
+)
+def test_all_faults_at_once(capsys, arguments, all_of):
+    assert main(["improve", str(SWISS), *arguments]) == 2
+    said = capsys.readouterr().err
+    assert all(words in said for words in all_of) and "Traceback" not in said
+
+
+def test_goals_that_cannot_be_met_are_explained():
+    scene = ws.load(SWISS)
+    found = ws.improve(scene, {"torques.0.value": ("-1.1 µN·m", "-0.9 µN·m")}, "amplitude = 330°")
+    assert not found.found and "amplitude comes to" in found.message and "-1.1 µN·m" in found.message
+    with pytest.raises(SceneError, match="holds no number"):
+        ws.improve(scene, {"scene.title": None}, "amplitude max")

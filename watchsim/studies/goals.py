@@ -1,0 +1,220 @@
+"""What is a better watch: which numbers may be changed, which result should be as large, as small or as near as possible, and
+which limits must be kept?
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from watchsim.scene.errors import Fault, SceneError
+from watchsim.scene.keys import DESIGN, nearest
+from watchsim.scene.read_settings import FUNCTION
+from watchsim.scene.scene import Scene
+from watchsim.studies.axes import dimension_of
+from watchsim.studies.point import OUTPUTS, Output
+from watchsim.studies.sensitivity import quantity_at
+from watchsim.units import ANGLE, NUMBER, RATE, TIME, Dimension, UnitError, parse, show, split, to
+
+MOST, LEAST, EQUAL, ABOVE, BELOW = "max", "min", "=", ">=", "<="
+UNITS = {"°": ANGLE, "s/d": RATE, "ms": TIME, "s": TIME, "": NUMBER}  # of outputs
+FAR = 10.0  # times the value a number without limits may become, or a tenth of it
+PLACE = "improve"
+
+
+@dataclass(frozen=True)
+class Knob:
+    """A number of the scene that may be changed: SI, with its value, and limits that may not be left."""
+
+    key: str
+    value: float
+    low: float
+    high: float
+    dimension: Dimension
+    unit: str  # in which people read it
+    given: bool = True  # the limits were given, and are no mere bounds of what makes sense
+
+    @property
+    def output(self) -> Output:
+        """The number itself as something to aim at."""
+        return Output(self.key, self.key, self.key, self.unit, has_error=False)
+
+    def shown(self, value: float, digits: int = 6) -> str:
+        return show(value, self.unit, digits)
+
+
+@dataclass(frozen=True)
+class Aim:
+    """`way`: an output as large (max) or as small (min) as possible, at (=), above (>=) or below (<=) `value`, in its unit."""
+
+    output: Output
+    way: str
+    value: float = math.nan
+
+    @property
+    def is_goal(self) -> bool:
+        return self.way in (MOST, LEAST)
+
+    def __str__(self) -> str:
+        return (
+            f"{self.output.name} {self.way}"
+            if self.is_goal
+            else f"{self.output.name} {self.way} {shown(self.output, self.value)}"
+        )
+
+
+def shown(output: Output, value: float, digits: int = 6) -> str:
+    """The value of an output with its unit and a true minus sign."""
+    gap = "" if output.unit in ("", "°", "%") else " "
+    return f"{value:.{digits}g}{gap}{output.unit}".replace("-", "−")
+
+
+def knobs_from(scene: Scene, limits: Mapping[str, tuple[Any, Any] | None], faults: list[Fault]) -> tuple[Knob, ...]:
+    """The numbers at those keys; with limits, SI numbers or texts, or None. Faults are added to those found."""
+    found: list[Knob] = []
+    for name, pair in limits.items():
+        key = full_key(scene, name)
+        if any(one.key == key for one in found):
+            faults.append(Fault(name, "is given twice; name each key once", place=PLACE))
+            continue
+        knob = _knob(scene, key, pair, faults)
+        if knob is not None:
+            found.append(knob)
+    return tuple(found)
+
+
+def full_key(scene: Scene, name: str) -> str:
+    """ "lock" of a scene with a design is "design.lock"."""
+    table = scene.source.get(DESIGN)
+    return f"{DESIGN}.{name}" if "." not in name and isinstance(table, dict) and name in table and name != "of" else name
+
+
+def _knob(scene: Scene, key: str, pair: tuple[Any, Any] | None, faults: list[Fault]) -> Knob | None:
+    before, dimension = len(faults), dimension_of(scene, key)
+    held = value_at(scene, key)
+    quantity = None if held is None or dimension is None else quantity_at(scene, key, held)
+    if dimension is None or (held is None and pair is None):
+        faults.append(Fault(key, _advice(scene, key), place=PLACE))
+        return None
+    low, high, value = math.nan, math.nan, math.nan
+    try:
+        if held is not None:
+            value = parse(held, dimension)
+        if pair is not None:
+            low, high = (parse(one, dimension) if isinstance(one, str) else float(one) for one in pair)
+    except (UnitError, TypeError) as error:
+        faults.append(Fault(key, str(error), f" = {pair[0]}:{pair[1]}" if pair else "", place=PLACE))
+        return None
+    unit = unit_of(held if held is not None else pair[0] if pair else "", dimension)
+    if pair is not None and not low < high:
+        faults.append(Fault(key, "the first limit must be below the second", f" = {pair[0]}:{pair[1]}", place=PLACE))
+    least, most = (None, None) if quantity is None else (quantity.low, quantity.high)
+    if pair is None:
+        wide = sorted((value / FAR, value * FAR)) if value else [-1.0, 1.0]
+        low, high = wide[0] if least is None else max(least, wide[0]), wide[1] if most is None else min(most, wide[1])
+    for limit, bad, word in ((least, low, "least"), (most, high, "most")):
+        if pair is not None and limit is not None and (bad < limit if word == "least" else bad > limit) and low < high:
+            faults.append(Fault(key, f"it can be {show(limit, unit)} at {word}", f" = {pair[0]}:{pair[1]}", place=PLACE))
+    if len(faults) > before:
+        return None
+    value = 0.5 * (low + high) if math.isnan(value) else value
+    return Knob(key, value, low, high, dimension, unit, pair is not None)
+
+
+def unit_of(held: object, dimension: Dimension) -> str:
+    """The unit in which the scene has the value, else one in which people read it."""
+    written = split(held)[1] if isinstance(held, str) and not isinstance(held, bool) else ""
+    return written or (dimension.usual[1] if dimension is not NUMBER else "")
+
+
+def value_at(scene: Scene, key: str) -> Any:
+    """What the scene has at a dotted path; None where it has nothing there."""
+    held: Any = scene.source
+    for step in key.split("."):
+        if isinstance(held, dict):
+            held = held.get(step)
+        elif isinstance(held, (list, tuple)) and step.isdigit() and int(step) < len(held):
+            held = held[int(step)]
+        else:
+            return None
+    return held if isinstance(held, (str, int, float)) and not isinstance(held, bool) else None
+
+
+def _advice(scene: Scene, key: str) -> str:
+    try:
+        scene.set(key, "0")
+    except SceneError as error:
+        found = [fault.message for fault in error.faults if fault.key == key and "unknown" in fault.message]
+        if found:
+            return found[0]
+    table = scene.source.get(DESIGN)
+    known = [name for name in table if name != "of"] if isinstance(table, dict) else []
+    return f"holds no number that can be varied. {nearest(key, known)}".rstrip()
+
+
+def aims_from(texts: Iterable[str], knobs: Sequence[Knob], option: str, faults: list[Fault]) -> tuple[Aim, ...]:
+    """Goals such as "amplitude max" and "rate = 0 s/d" (`option` --goal), limits such as "lock >= 1.2°" (--keep)."""
+    found = []
+    ways = f"{MOST}|{LEAST}" if option == "--goal" else f"{ABOVE}|{BELOW}|≥|≤"
+    example = '"amplitude max" or "amplitude = 290°"' if option == "--goal" else '"total_lock >= 1.2°"'
+    for text in texts:
+        match = re.fullmatch(rf"\s*([\w.]+)\s*({ways}|=)\s*(.*?)\s*", text)
+        if match is None or (match[2] in (MOST, LEAST)) != (not match[3]):
+            faults.append(Fault(option, f"write {example}", f' "{text}"', place=PLACE))
+            continue
+        name, way = match[1], {"≥": ABOVE, "≤": BELOW}.get(match[2], match[2])
+        output = OUTPUTS.get(name) or next((one.output for one in knobs if name in (one.key, one.key.rpartition(".")[2])), None)
+        if output is None:
+            known = [*OUTPUTS, *(one.key for one in knobs)]
+            faults.append(
+                Fault(option, f'"{name}" is neither an output nor varied. {nearest(name, known)}', f' "{text}"', place=PLACE)
+            )
+            continue
+        try:
+            value = _number(match[3], output, knobs) if match[3] else math.nan
+        except UnitError as error:
+            faults.append(Fault(option, str(error), f' "{text}"', place=PLACE))
+            continue
+        found.append(Aim(output, way, value))
+    return tuple(found)
+
+
+def _number(text: str, output: Output, knobs: Sequence[Knob]) -> float:
+    """In the unit of the output."""
+    knob = next((one for one in knobs if one.key == output.name), None)
+    value = parse(text, knob.dimension if knob else UNITS[output.unit])
+    return to(value, output.unit) if output.unit else value
+
+
+def check(knobs: Sequence[Knob], goals: Sequence[Aim], keeps: Sequence[Aim], faults: list[Fault]) -> None:
+    """What does not fit together; SceneError with all faults."""
+    if not knobs and not faults:
+        faults.append(Fault("KEY=FROM:TO", 'name what may be changed, such as "lock=1°:3°", or --vary KEY', place=PLACE))
+    if not goals and not faults:
+        faults.append(Fault("--goal", 'name a goal, such as "amplitude max" or "amplitude = 290°"', place=PLACE))
+    limits: dict[str, tuple[float, float]] = {}
+    for one in (*goals, *keeps):
+        if one.is_goal:
+            continue
+        low, high = limits.get(one.output.name, (-math.inf, math.inf))
+        low = max(low, one.value) if one.way in (ABOVE, EQUAL) else low
+        high = min(high, one.value) if one.way in (BELOW, EQUAL) else high
+        limits[one.output.name] = low, high
+        if low > high:
+            faults.append(
+                Fault("--keep", f"nothing can be above {low:g} and below {high:g}", f" {one.output.name}", place=PLACE)
+            )
+    names = [one.output.name for one in goals]
+    for name in {name for name in names if names.count(name) > 1}:
+        faults.append(Fault("--goal", "is given twice", f" {name}", place=PLACE))
+    if faults:
+        raise SceneError(faults)
+
+
+def needs(aims: Iterable[Aim]) -> tuple[bool, bool]:
+    """Is the motion needed for these, and the geometry of function?"""
+    names = {one.output.name for one in aims}
+    return bool(names & (set(OUTPUTS) - set(FUNCTION))), bool(names & set(FUNCTION))
