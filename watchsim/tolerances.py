@@ -240,7 +240,7 @@ EXPLAINED_OF_HIGHEST = 1e-12
 STOPPABLE_SPEED = 30.0
 # Of the energy turned over: a larger residual is no rounding. Large: faults pass; small: sound runs end.
 LEDGER_SHARE = 1e-6
-# The same, for each of the tolerance: that was asked for. Large, small: as above.
+# The same, for each of the tolerance: that was requested. Large, small: as above.
 LEDGER_PER_TOLERANCE = 1e3
 # tolerances: error of positions at rows, each for itself. Large: bends are smoothed; small: rates between rows ring.
 ROW_NOISE = 0.5

@@ -25,7 +25,6 @@ from typing import Any, NamedTuple
 
 ROOT = Path(__file__).resolve().parents[2]
 SEED = 32
-JUDGED, WRONG = 60, 3  # mechanisms judged without a rule, and wrong ones among them after which it has its price
 
 
 class Rule(NamedTuple):
@@ -40,7 +39,7 @@ def _rule(name: str, file: str, old: str, new: str, *more: str) -> Rule:
     return Rule(name, tuple(zip(edits[::3], edits[1::3], edits[2::3], strict=True)))
 
 
-LOOP, EVENTS, CLOSED = "simulation/event_loop.py", "simulation/events.py", "simulation/closed_contacts.py"
+LOOP, EVENTS, CLOSED = "simulation/event_loop.py", "simulation/event_loop.py", "simulation/closed_contacts.py"
 MODES, IMPACTS, MOTION = "simulation/modes.py", "simulation/impacts.py", "simulation/coupled_motion.py"
 CLOSING, FRICTION, IMPACT = "simulation/first_closing.py", "dynamics/friction.py", "dynamics/impact.py"
 FORCES, REDUNDANT, GAPS = "dynamics/acceleration.py", "dynamics/redundant.py", "contact/gaps.py"
@@ -262,13 +261,15 @@ def copied(folder: Path) -> None:
             path.write_text(text)
 
 
-Case = tuple[str, Callable[[], Any], Callable[[], str] | None]  # its name, a run to compare, a verdict ("" where all is well)
+Case = tuple[str, Callable[[], Any], Callable[[Any, bool], str] | None]  # name, numbers and run, verdict ("": all well)
 
 
 def cases(args: argparse.Namespace) -> Iterator[Case]:
     """Everything that is run."""
+    from hunt.books import faults
     from hunt.generator.generate import mechanism
-    from hunt.judge import _Clock, judged
+    from hunt.generator.material import Material
+    from hunt.judge import _Clock, _weights, judged
     from recorded_scenes import all_names, run_of, scene_of, told
 
     from watchsim.scene.load import load
@@ -276,18 +277,22 @@ def cases(args: argparse.Namespace) -> Iterator[Case]:
     from watchsim.verification import benchmarks, hard_cases, repeated_impacts
     from watchsim.verification.verify import rows_of
 
-    def recorded(name: str) -> Any:
-        return vars(told(run_of(scene_of(name))))
-
-    def verdict(scene: Any, number: int) -> str:
-        found = judged(scene, number)
-        return "" if found.kind in ("fine", "sensitive") else f"{found.kind}: {found.reasons[0]}"
-
     def motion(scene: Any) -> Any:
         run = simulate(scene, tolerance=1e-9, progress=_Clock())
-        return run.end_q.tolist(), run.end_u.tolist(), run.counts, int(run.stop)
+        shares = run.end_q * _weights(scene) if all(body.loops for body in scene.bodies) else run.end_q
+        return (shares.tolist(), run.end_u.tolist(), run.counts, int(run.stop)), run
 
-    def wrong(benchmark: Any) -> str:
+    def recorded(name: str) -> Any:
+        return vars(told(run_of(scene_of(name)))), None
+
+    def verdict(scene: Any, number: int, run: Any, in_full: bool) -> str:
+        found = [*faults(run, Material(scene))]
+        if in_full and not found:
+            whole = judged(scene, number)
+            found = [] if whole.kind in ("fine", "sensitive") else [f"{whole.kind}: {whole.reasons[0]}"]
+        return found[0] if found else ""
+
+    def wrong(benchmark: Any, _run: Any, _in_full: bool) -> str:
         return "; ".join(row["quantity"] for row in rows_of([benchmark]) if not row["ok"])
 
     made = (benchmarks.inclines, benchmarks.swings, hard_cases.hard_cases, hard_cases.edge_cases)
@@ -302,39 +307,45 @@ def cases(args: argparse.Namespace) -> Iterator[Case]:
         yield f"recorded/{name}", partial(recorded, name), None
 
 
-def priced(case: Case, switches: Any, judged: Counter[str], wrong: Counter[str]) -> dict[str, Any]:
+def priced(case: Case, switches: Any, judged: Counter[str], wrong: Counter[str], in_full_up_to: int) -> dict[str, Any]:
     """Which rules took effect in a case, which moved it, and what is wrong without them."""
     name, run, verdict = case
     switches[:] = 0
-    base = repr(run())
+    base, whole = run()
     took = [k for k in range(len(RULES)) if switches[1, k]]
-    found: dict[str, Any] = {"case": name, "took": [RULES[k].name for k in took], "moved": {}}
-    sound = None
+    found: dict[str, Any] = {"case": name, "took": [RULES[k].name for k in took], "moved": {}, "far": {}}
+    sound: dict[bool, bool] = {}
     for k in took:
+        rule = RULES[k].name
         switches[:] = 0
         switches[0, k] = 1
+        moved, in_full = None, not wrong[rule] and judged[rule] < in_full_up_to
         try:
-            if repr(run()) == base:
+            numbers, moved = run()
+            if repr(numbers) == repr(base):
                 continue
-            what = None
-            if verdict and (name.startswith("verify") or (judged[RULES[k].name] < JUDGED and wrong[RULES[k].name] < WRONG)):
-                what = verdict()
+            what = verdict(moved, in_full) if verdict else None
         except Exception as error:
             what = f"crashed: {error}"
         if what and verdict:
             switches[:] = 0
-            sound = not verdict() if sound is None else sound
-            what = what if sound else ""
-        found["moved"][RULES[k].name] = what
-        if not name.startswith("verify"):
-            judged[RULES[k].name] += what is not None
-            wrong[RULES[k].name] += bool(what)
+            if in_full not in sound:
+                sound[in_full] = not verdict(whole, in_full)
+            what = what if sound[in_full] else ""
+        found["moved"][rule] = what
+        if verdict and moved is not None:
+            found["far"][rule] = max((abs(a - b) for a, b in zip(numbers[0], base[0], strict=True)), default=0.0)
+        judged[rule] += in_full
+        wrong[rule] += bool(what)
     return found
 
 
 def table(lines: list[dict[str, Any]]) -> str:
     """By rule: in how many cases it took effect, moved the motion, and how many are wrong without it."""
-    rows = ["| rule | took effect | moved | verify | kept scenes | hunt, of those judged |", "|---|---:|---:|---|---|---|"]
+    rows = [
+        "| rule | took effect | moved | verify | kept scenes | hunt | by more than 1e-6 | furthest |",
+        "|---|---:|---:|---|---|---|---:|---:|",
+    ]
     for rule in RULES:
         took = sum(rule.name in line["took"] for line in lines)
         moved = [(line["case"], line["moved"][rule.name]) for line in lines if rule.name in line["moved"]]
@@ -343,6 +354,8 @@ def table(lines: list[dict[str, Any]]) -> str:
             own = [(case.split("/", 1)[1], what) for case, what in moved if case.startswith(kind) and what is not None]
             bad = [case for case, what in own if what]
             parts.append(f"{len(bad)} of {len(own)}" + (f" ({', '.join(bad[:3])})" if bad else ""))
+        far = [line["far"][rule.name] for line in lines if rule.name in line.get("far", {})]
+        parts += [str(sum(not way <= 1e-6 for way in far)), f"{max(far, default=0.0):.0e}"]
         rows.append(f"| {rule.name} | {took} | {len(moved)} | " + " | ".join(parts) + " |")
     return "\n".join(rows)
 
@@ -353,6 +366,7 @@ def main() -> int:
     parser.add_argument("scenes", type=Path, nargs="*")
     parser.add_argument("--count", type=int, default=2000)
     parser.add_argument("--start", type=int, default=0)
+    parser.add_argument("--judge", type=int, default=0, metavar="N", help="judge N moved mechanisms of a rule in full")
     parser.add_argument("--table", action="store_true")
     args = parser.parse_args()
     kept = args.folder / "found.jsonl"
@@ -367,13 +381,13 @@ def main() -> int:
 
     switches = vars(jit)["SWITCHES"]
     done = {line["case"] for line in lines}
-    moved = [found for line in lines if not line["case"].startswith("verify") for found in line["moved"].items()]
-    judged = Counter(name for name, what in moved if what is not None)
+    moved = [found for line in lines for found in line["moved"].items()]
+    judged: Counter[str] = Counter()
     wrong = Counter(name for name, what in moved if what)
     for case in cases(args):
         if case[0] not in done:
             try:
-                found = priced(case, switches, judged, wrong)
+                found = priced(case, switches, judged, wrong, args.judge)
             except Exception as error:
                 found = {"case": case[0], "took": [], "moved": {}, "error": repr(error)}
             with kept.open("a") as file:

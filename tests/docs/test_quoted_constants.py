@@ -27,10 +27,10 @@ from watchsim.scene import keys
 from watchsim.scene import load as read_scene
 from watchsim.scene import trains as carriers
 from watchsim.simulation import event_loop as advance
-from watchsim.simulation import free_motion as root_bracket
 from watchsim.simulation import moreau_percussions as prox_relaxation
 from watchsim.simulation import overlap_sieve as watched_instants
 from watchsim.simulation import overlap_watch
+from watchsim.simulation import step_path as root_bracket
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 WORDS = {

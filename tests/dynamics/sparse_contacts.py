@@ -7,8 +7,8 @@ from types import SimpleNamespace
 import numpy as np
 
 from watchsim.contact.gaps import Closed, closed_contacts
-from watchsim.dynamics.contact_work import ContactWork, contact_work
 from watchsim.model import CONTACT, COORDINATE, LAW, Records, records
+from watchsim.simulation.scratch import ContactWork, contact_work
 
 SPARE = 2  # rows of contacts that nobody may read
 

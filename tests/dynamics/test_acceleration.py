@@ -13,7 +13,6 @@ from sparse_contacts import Sparse
 from watchsim.contact.gaps import BACKWARD, FORWARD, OPEN, STICK, closed_contacts, contact_kinematics, place, poses
 from watchsim.dynamics import acceleration, delassus
 from watchsim.dynamics import forces as bearing_friction
-from watchsim.dynamics.contact_work import contact_work
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Line
 from watchsim.jit import callable_kernel
@@ -21,6 +20,7 @@ from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.model import LINE
 from watchsim.scene.forces import Contact, Side
 from watchsim.scene.scene import Body, Scene
+from watchsim.simulation.scratch import contact_work
 from watchsim.verification.contact_problems import accelerate, decide_modes, solve_mode
 
 # Does the acceleration-level problem decide roll, slip and detachment as mechanics does, singular cases included?

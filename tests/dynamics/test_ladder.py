@@ -13,7 +13,6 @@ from plain_kernels import in_python
 from random_contacts import random_case
 
 from watchsim.dynamics import friction
-from watchsim.dynamics.contact_work import ContactWork, contact_work, contact_work_by_reference
 from watchsim.dynamics.friction import (
     _detour,
     _solve_copositive,
@@ -25,6 +24,7 @@ from watchsim.dynamics.friction import (
 )
 from watchsim.dynamics.lcp import Level, Solver
 from watchsim.jit import entry
+from watchsim.simulation.scratch import ContactWork, contact_work, contact_work_by_reference
 
 # Is each rung of the ladder right by itself, and together do they find a solution exactly when there is one?
 

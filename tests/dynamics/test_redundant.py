@@ -12,7 +12,7 @@ from random_contacts import Case
 
 from watchsim.contact.gaps import STICK
 from watchsim.dynamics import redundant
-from watchsim.dynamics.contact_work import ContactWork, contact_work
+from watchsim.simulation.scratch import ContactWork, contact_work
 from watchsim.verification.contact_problems import accelerate, decide_modes, solve_mode
 
 # Are accelerations right and forces the smallest possible where contacts are redundant?

@@ -18,9 +18,9 @@ from watchsim.jit import callable_kernel
 from watchsim.mechanism.compile import compile_scene
 from watchsim.scene.forces import Contact, Damping, Side, Spring, Torque
 from watchsim.scene.scene import Body, Scene
-from watchsim.simulation.free_motion import turning_time
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.state import EventKind, Stop
+from watchsim.simulation.step_path import turning_time
 
 # Does dry friction in a bearing hold, break loose and take energy as Coulomb's law says, in flight and with contacts?
 

@@ -27,10 +27,10 @@ from watchsim.mechanism.compile import compile_scene
 from watchsim.results.folder import read_results
 from watchsim.scene.forces import Contact, Damping, Side, Spring, Torque
 from watchsim.scene.scene import Body, Scene
-from watchsim.simulation import free_motion
-from watchsim.simulation.free_motion import acceleration_bound, flow
+from watchsim.simulation import step_path
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.state import EventKind, Stop
+from watchsim.simulation.step_path import acceleration_bound, flow
 from watchsim.simulation.trajectory import Trajectory
 
 # Is the flight of one coordinate the exact solution of its equation, and when does it turn back?
@@ -53,7 +53,7 @@ def coordinate(case: str) -> SimpleNamespace:
 
 
 def ask(name: str, *arguments):
-    return in_python(getattr(free_motion, name))(*arguments)
+    return in_python(getattr(step_path, name))(*arguments)
 
 
 def matrix(one: SimpleNamespace, grip: float) -> np.ndarray:

@@ -23,8 +23,7 @@ from watchsim.geometry.primitives import Line
 from watchsim.scene.forces import Damping, Torque
 from watchsim.scene.scene import Body, Scene
 from watchsim.simulation import coupled_motion as drift_projection
-from watchsim.simulation import dop853, step_path
-from watchsim.simulation import dop853 as dense_output
+from watchsim.simulation import integrator, step_path
 from watchsim.simulation.scratch import COUPLED
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.state import Stop
@@ -39,18 +38,18 @@ START = 0.8
 
 def test_coefficients() -> None:
     """Entered by hand from the book; scipy has them from the authors' own program."""
-    n = dop853.STAGES
-    assert np.array_equal(dop853.C[:n], DOP853.C[:n])
-    assert np.array_equal(dop853.A[:n, :n], DOP853.A)
-    assert np.array_equal(dop853.A[n, :n], DOP853.B)
-    assert dop853.C[n] == 1.0
+    n = integrator.STAGES
+    assert np.array_equal(integrator.C[:n], DOP853.C[:n])
+    assert np.array_equal(integrator.A[:n, :n], DOP853.A)
+    assert np.array_equal(integrator.A[n, :n], DOP853.B)
+    assert integrator.C[n] == 1.0
     assert np.array_equal(
-        dop853.A[n + 1 : n + 4, : n + 4], np.pad(DOP853.A_EXTRA, ((0, 0), (0, n + 4 - DOP853.A_EXTRA.shape[1])))
+        integrator.A[n + 1 : n + 4, : n + 4], np.pad(DOP853.A_EXTRA, ((0, 0), (0, n + 4 - DOP853.A_EXTRA.shape[1])))
     )
-    assert np.array_equal(dop853.C[n + 1 : n + 4], DOP853.C_EXTRA)
-    assert np.array_equal(dop853.E3, DOP853.E3)
-    assert np.array_equal(dop853.E5, DOP853.E5)
-    assert np.array_equal(dop853.D, DOP853.D)
+    assert np.array_equal(integrator.C[n + 1 : n + 4], DOP853.C_EXTRA)
+    assert np.array_equal(integrator.E3, DOP853.E3)
+    assert np.array_equal(integrator.E5, DOP853.E5)
+    assert np.array_equal(integrator.D, DOP853.D)
 
 
 def rolling_in_a_bowl() -> Scene:
@@ -250,9 +249,9 @@ def test_values_slopes_and_bends_are_those_of_the_polynomial(tau: float) -> None
     step, wanted = a_step(COUPLED, 2)
     for i in range(4):
         value, slope, bend = (wanted[i].deriv(k)(tau / LENGTH) / LENGTH**k for k in range(3))
-        assert in_python(dense_output.dense)(step, i, tau) == pytest.approx((value, slope), rel=1e-12, abs=0.0)
-        assert in_python(dense_output.dense_value)(step, i, tau) == pytest.approx(value, rel=1e-12, abs=0.0)
-        assert in_python(dense_output.dense_bend)(step, i, tau) == pytest.approx(bend, rel=1e-11, abs=1e-10)
+        assert in_python(step_path.dense)(step, i, tau) == pytest.approx((value, slope), rel=1e-12, abs=0.0)
+        assert in_python(step_path.dense_value)(step, i, tau) == pytest.approx(value, rel=1e-12, abs=0.0)
+        assert in_python(step_path.dense_bend)(step, i, tau) == pytest.approx(bend, rel=1e-11, abs=1e-10)
 
 
 def moved(coordinate: Any, grip: int, q: float, u: float, t: float) -> tuple[float, float]:

@@ -20,7 +20,6 @@ from watchsim.scene.scene import Body, Scene
 from watchsim.simulation.closed_contacts import is_explained
 from watchsim.simulation.coupled_motion import NORMAL
 from watchsim.simulation.event_loop import BEARING, KINDS, TOUCHED
-from watchsim.simulation.free_motion import MOST, is_open, narrowed, next_time, opened
 from watchsim.simulation.modes import begin_instant, decide_once, key_of_modes
 from watchsim.simulation.options import options_for
 from watchsim.simulation.recording import pairs_of
@@ -28,13 +27,14 @@ from watchsim.simulation.run_end import ledger_fails, what_alternates
 from watchsim.simulation.scratch import Ended
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.state import Stop, new_state
+from watchsim.simulation.step_path import MOST, is_open, narrowed, next_time, opened
 from watchsim.tolerances import LENIENCE_STEP, MOST_LENIENT
 
 ROOT = Path(jit.__file__).resolve().parents[1]
 SABOTAGE = """
 import sys
 import watchsim.simulation.event_loop as step
-import watchsim.simulation.events as settle
+import watchsim.simulation.event_loop as settle
 from moving_scenes import profile
 from watchsim.simulation.simulate import simulate
 

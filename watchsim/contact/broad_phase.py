@@ -355,7 +355,7 @@ class PairSearch:
         points, distance = self._seen(at, room, used)
         first, cells = _firsts(self._drawn, used), len(at)
         within = (distance[:, row] + self._still_sag[other]) * (1.0 + PLANE_ROUNDING)
-        # Most are far apart, which circles around them tell sooner.
+        # Most are far apart, which circles around them show sooner.
         cell, place = np.nonzero(self._circles_near(points, first, row, other, within))
         every = np.append((first[:-1] + points.shape[1] * np.arange(cells)[:, None]).ravel(), points.shape[0] * points.shape[1])
         shapes = _shapes(points.reshape(-1, 2), every).reshape(cells, len(used))

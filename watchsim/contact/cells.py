@@ -1,6 +1,6 @@
 """Which contacts are candidates in each cell of two bodies' configuration space?
 
-Asked for once (broad_phase.py), together with the cells ahead, on the way that the bodies move. What is found holds as well
+Looked up once (broad_phase.py), together with the cells ahead, on the way that the bodies move. What is found holds as well
 for every part of a turn by which an outline comes back onto itself, and for later runs with the same geometry.
 """
 

@@ -100,7 +100,7 @@ def room_beside_active(model, active, in_force, options, k, pose):
 
 
 @kernel
-def _successor(model, cells, q, mode, options, k, pose, asked, out_counts):
+def _successor(model, cells, q, mode, options, k, pose, out_request, out_counts):
     """The open contact that goes on where contact k ends: (known, its number or NO_CONTACT).
 
     `known` is False where the cell is unknown.
@@ -110,7 +110,7 @@ def _successor(model, cells, q, mode, options, k, pose, asked, out_counts):
         p += 1
     how, start, count = candidates(model, cells, p, q)
     if how == UNKNOWN:
-        request_cell(asked, p, q)
+        request_cell(out_request, p, q)
         return False, NO_CONTACT
     if how == LISTED:
         out_counts.cells_looked_up += 1
@@ -133,7 +133,7 @@ def hand_over(model, cells, state, options, scratch, record):
         k = state.regime.active[j]
         if extent_margin(model, k, event.pose) >= -LEFT_PRIMITIVE * options.extent:
             continue
-        known, successor = _successor(model, cells, state.q, mode, options, k, event.pose, scratch.asked, state.counts)
+        known, successor = _successor(model, cells, state.q, mode, options, k, event.pose, scratch.requested, state.counts)
         if not known:
             return False
         if successor != NO_CONTACT:
@@ -182,7 +182,7 @@ def insert(ids, count, k):
 
 
 @kernel
-def gather(model, cells, state, options, asked, pose, out_ids):
+def gather(model, cells, state, options, out_request, pose, out_ids):
     """Ids of I_C, ascending: contacts in force and those with a gap of zero.
 
     What a contact in force will touch next on the same smooth outline is left out. Poses must be current. Of `state` only
@@ -204,7 +204,7 @@ def gather(model, cells, state, options, asked, pose, out_ids):
             continue
         how, start, count = candidates(model, cells, p, state.q)
         if how == UNKNOWN:
-            request_cell(asked, p, state.q)
+            request_cell(out_request, p, state.q)
             return Stop.CELL_UNKNOWN, m
         if how == LISTED:
             state.counts.cells_looked_up += 1

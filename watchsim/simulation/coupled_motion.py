@@ -1,6 +1,6 @@
 """How do bodies move while contacts couple them?
 
-Right-hand side of the smooth motion in the decided modes, and the monitors that tell when a mode ends: a normal force that
+Right-hand side of the smooth motion in the decided modes, and the monitors that show when a mode ends: a normal force that
 vanishes, a slip that reverses, a friction force that reaches its cone, a contact that leaves its primitive, a contact that
 comes near Painlevé's paradox, a bearing with dry friction that stops or breaks loose.
 """
@@ -122,7 +122,7 @@ def place_contacts(model, ids, first, last, pose, out_closed):
 def project_positions(closed, m, both, behind, inverse, projection, out_q):
     """Close the gaps of the first m contacts (only negative ones unless `both`); returns the deepest penetration found, m.
 
-    What is no drift but what flat faces have let bodies sink in (`is_immovable` in events.py) stays. `behind`: see `_wanted`.
+    What flat faces have let bodies sink in (`is_immovable`) is no drift and stays. `behind`: see `_wanted`.
     """
     deepest = 0.0
     for i in range(m):

@@ -1,7 +1,7 @@
 """How does a simulation go from event to event?
 
 The event loop (`advance`): one smooth step (an exact flight where nothing couples the moving bodies), the first event in it,
-the step up to that event, and what follows the event (events.py). It is left only for a reason that `Stop` names.
+the step up to that event, and what follows the event (`handle_event`). It is left only for a reason that `Stop` names.
 """
 
 from __future__ import annotations
@@ -9,21 +9,59 @@ from __future__ import annotations
 import math
 
 from watchsim.contact.cell_lookup import time_through_cells
-from watchsim.contact.gaps import OPEN, normal_gap, place
-from watchsim.dynamics.delassus import fill_inverse
-from watchsim.dynamics.forces import next_knot
+from watchsim.contact.gaps import OPEN, STICK, extent_margin, place
+from watchsim.dynamics.acceleration import accelerate
+from watchsim.dynamics.delassus import apply, copy, fill_inverse
+from watchsim.dynamics.forces import add_drag, forces, next_knot
 from watchsim.jit import entry, kernel
 from watchsim.model import CellsRef, ModelRef
-from watchsim.simulation.closed_contacts import is_explained, kinetic_energy, refresh
-from watchsim.simulation.coupled_motion import motion, place_contacts, project_positions, project_velocities
-from watchsim.simulation.dop853 import dense_value
-from watchsim.simulation.events import handle_event
+from watchsim.simulation.closed_contacts import (
+    defer_parallel,
+    drop_immovable,
+    gather,
+    hand_over,
+    insert,
+    is_explained,
+    kinetic_energy,
+    release_left,
+)
+from watchsim.simulation.coupled_motion import (
+    add_terms,
+    begin_terms,
+    find_sleepers,
+    island_of,
+    label_islands,
+    place_contacts,
+    project_positions,
+    project_velocities,
+    sort_by_island,
+)
 from watchsim.simulation.first_closing import first_touch
-from watchsim.simulation.free_motion import flow
-from watchsim.simulation.integrator import NONE_FIRED, coupled_step, first_leave, first_turn
-from watchsim.simulation.modes import begin_instant, decide_once, key_of_modes
+from watchsim.simulation.impacts import approaching, collide
+from watchsim.simulation.integrator import NONE_FIRED, accept_coupled, coupled_step, first_leave, first_turn
+from watchsim.simulation.modes import (
+    Verdict,
+    begin_instant,
+    decide,
+    decide_once,
+    hold_at_dead_centre,
+    judge,
+    key_of_modes,
+    release_pulling,
+    replace,
+    set_rate_zeros,
+    track_peak_speed,
+)
 from watchsim.simulation.options import OptionsRef, longest_step
-from watchsim.simulation.scratch import MONITORS, RECENT, SUMS, RecordRef, keep_row, scratch_by_reference, state_by_reference
+from watchsim.simulation.scratch import (
+    MONITORS,
+    RECENT,
+    RecordRef,
+    keep_change,
+    keep_row,
+    scratch_by_reference,
+    state_by_reference,
+)
 from watchsim.simulation.state import NO_CONTACT, Stop
 from watchsim.simulation.step_path import (
     FLIGHT_PHASE,
@@ -35,14 +73,218 @@ from watchsim.simulation.step_path import (
     keep_inner_rows,
     keep_passages,
 )
-from watchsim.tolerances import DEPENDENT_IN_STEPS, FINEST_ROWS, FURTHEST_SIZES, HIDDEN_REBOUND, RATES_TURNED, SAME_INSTANT
+from watchsim.tolerances import (
+    DEPENDENT_AT_EVENTS,
+    DEPENDENT_IN_STEPS,
+    FINEST_ROWS,
+    FURTHEST_SIZES,
+    LEFT_PRIMITIVE,
+    SAME_INSTANT,
+)
 
 TOUCHED, BEARING, KINDS = MONITORS, MONITORS + 1, MONITORS + 2  # what ends a step, besides the monitors of a contact
 FLIGHT_CELLS = 128
 EVENTS_AT_ONCE = 2000
 ROWS_PER_STEP = math.ceil(FLIGHT_PHASE / FINEST_ROWS) + 8
 EVENTS_PER_CONTACT = 20
-NEWTON_STEPS = 6
+ROUNDS = 16  # impacts and decisions in a row at one instant
+
+# What follows an event?
+#
+# At one instant, in this order: the closed contacts are gathered and fall into islands; gaps and rates of each are closed
+# (`close_gaps`), then impacts and decisions about modes follow each other until the modes hold (`resolve`) and are taken over
+# (`apply_modes`); at last positions and velocities are exact to rounding, and all contacts in force get their accelerations
+# (`finish_event`). Impacts are in impacts.py, decisions in modes.py, what counts as closed in closed_contacts.py.
+
+
+@kernel
+def handle_event(model, cells, state, options, scratch, record):
+    """Handle the event that waits at the current state; returns a Stop code, RUNNING when all went well."""
+    event = scratch.event
+    listed, label, upto = event.listed, event.label, event.upto
+    event.peak_speed[:] = 0.0
+    place(model, state.q, state.u, event.pose)
+    project_landing(model, state, options, scratch)
+    if not hand_over(model, cells, state, options, scratch, record):
+        return Stop.CELL_UNKNOWN
+    release_left(model, state, options, event.pose, record)
+    code, m = gather(model, cells, state, options, scratch.requested, event.pose, listed)
+    if code != Stop.RUNNING:
+        return code
+    label_islands(model, listed, m, label)
+    sort_by_island(model, label, m, listed, upto)
+    first = 0
+    for island in range(len(label)):
+        if label[island] != island:
+            continue
+        last = upto[first] if first < m and island_of(model, label, listed[first]) == island else first
+        fill_inverse(model, state.regime.grip, scratch.work.system.inverse)
+        closed = close_gaps(model, state, (first, last), options, scratch, record)
+        code, r = resolve(model, state, island, closed, options, scratch, record)
+        if code != Stop.RUNNING:
+            return code
+        apply_modes(state, closed, r, event, record)
+        first = last
+    in_force = _closed_of(state.regime.mode, m, listed, state.regime.active)
+    finish_event(model, state, in_force, options, scratch, record)
+    state.instant.event_waits, state.instant.touched = 0, NO_CONTACT
+    return Stop.RUNNING
+
+
+@kernel
+def project_landing(model, state, options, scratch):
+    """Where a contact has just closed and one in force seems to have left its primitive, take back the drift of both.
+
+    A body that lands on a face rests on one corner when the other one meets it. Drift of the first gap turns the body, by more
+    than the joint of its fan of normals: it would be let go in the moment in which both are pressed.
+    """
+    event, inverse, m = scratch.event, scratch.work.system.inverse, state.instant.awake_contacts
+    if state.instant.touched == NO_CONTACT or m + 1 > len(event.closed.ids):
+        return
+    left = False
+    for j in range(m):
+        left = left or extent_margin(model, state.regime.active[j], event.pose) < -LEFT_PRIMITIVE * options.extent
+    if not left:
+        return
+    fill_inverse(model, state.regime.grip, inverse)
+    for j in range(m):
+        event.listed[j] = state.regime.active[j]
+    m = insert(event.listed, m, state.instant.touched)
+    place_contacts(model, event.listed, 0, m, event.pose, event.closed)
+    project_positions(event.closed, m, True, options.behind, inverse, scratch.projection, state.q)
+    place(model, state.q, state.u, event.pose)
+
+
+@kernel
+def close_gaps(model, state, span, options, scratch, record):
+    """Take back what gaps and rates have drifted of the contacts `event.listed[span[0]:span[1]]`, of one island.
+
+    They are left in `event.closed`, without those that cannot count; returns how many.
+    """
+    work, event, projection = scratch.work, scratch.event, scratch.projection
+    closed, inverse = event.closed, work.system.inverse
+    m = place_contacts(model, event.listed, span[0], span[1], event.pose, closed)
+    m = drop_immovable(model, state, m, event, record)
+    m = defer_parallel(model, state.regime.mode, state.instant.touched, m, options, work.system, event)
+    track_peak_speed(state.u, event.peak_speed)
+    deepest = project_positions(closed, m, False, options.behind, inverse, projection, state.q)
+    if deepest > 0.0:
+        state.worst.penetration = max(state.worst.penetration, deepest)
+        replace(model, state.q, state.u, m, event)
+        # Rates of the contacts in force have changed with the places, by the gaps times how fast bodies turn.
+        project_velocities(closed, m, state.regime.mode, DEPENDENT_IN_STEPS, inverse, projection, state.u)
+        replace(model, state.q, state.u, m, event)
+    return m
+
+
+@kernel
+def resolve(model, state, island, m, options, scratch, record):
+    """Impacts and decisions of the island's m closed contacts until the modes hold; returns (Stop code, contacts in I_N).
+
+    An impact wherever a contact approaches or is jammed, else a decision, which holds, or says what is to be done before the
+    next one: see `Verdict`.
+    """
+    work, event, exactly, jammed, hit = scratch.work, scratch.event, False, False, False
+    for _ in range(ROUNDS):
+        set_rate_zeros(event.closed, m, exactly, options, event.peak_speed, event.zero)
+        if jammed or approaching(m, event.closed, event.zero):
+            jam_speed = options.speed_zero if jammed else 0.0
+            if not collide(model, state, island, m, options, jam_speed, scratch, record):
+                return Stop.LCP_FAILED, 0
+            jammed, hit = False, not jammed
+        else:
+            decision = decide(model, state, island, m, options, work.system, work.problem, event, state.regime.grip)
+            verdict = judge(model, state, island, m, decision, (exactly, hit), options, scratch, record)
+            if verdict == Verdict.HOLDS:
+                return Stop.RUNNING, decision[0]
+            if verdict == Verdict.FAILED:
+                return Stop.LCP_FAILED, 0
+            exactly = exactly or verdict == Verdict.EXACTLY
+            jammed, hit = verdict == Verdict.JAMMED, hit and verdict != Verdict.ROUNDING
+    return Stop.TOO_MANY_EVENTS, 0
+
+
+@kernel
+def apply_modes(state, m, r, event, record):
+    """Replace the modes of the m closed contacts by the decided ones, `event.decided` for the r in I_N, and record changes."""
+    closed, rest = event.closed, event.rest
+    for i in range(m):
+        k, new = closed.ids[i], OPEN
+        for j in range(r):
+            if rest.ids[j] == k:
+                new = event.decided[k]
+        keep_change(record, state.clock, state.counts, k, state.regime.mode[k], new)
+        state.regime.mode[k] = new
+
+
+@kernel
+def _closed_of(mode, m, ids, out_ids):
+    """Those of the m contacts that are closed; returns their number."""
+    f = 0
+    for j in range(m):
+        if mode[ids[j]] != OPEN:
+            out_ids[f] = ids[j]
+            f += 1
+    return f
+
+
+@kernel
+def finish_event(model, state, f, options, scratch, record):
+    """Exact positions and velocities, accelerations and sleep with the f contacts in force, `state.regime.active[:f]`."""
+    work, event, rest = scratch.work, scratch.event, scratch.event.rest
+    system = work.system
+    label_islands(model, state.regime.active, f, event.label)
+    sort_by_island(model, event.label, f, state.regime.active, state.regime.upto)
+    place(model, state.q, state.u, event.pose)
+    forces(model, state.clock.time, state.q, state.u, system.h)
+    add_drag(model, state.regime.grip, system.h)
+    fill_inverse(model, state.regime.grip, system.inverse)
+    accelerate(model, rest, 0, system, state.a)
+    begin_terms(system.h, event.terms)
+    first = 0
+    while first < f:
+        m = place_contacts(model, state.regime.active, first, state.regime.upto[first], event.pose, rest)
+        _correct(state, m, options, system.inverse, scratch.projection, rest, event.trial)
+        first += m
+        m, unique = release_pulling(model, state, m, options, system, work.modes, event, record)
+        if not unique:
+            state.counts.redundant_sets += 1
+        apply(rest, m, system.force, system.inverse, state.a)
+        hold_at_dead_centre(model, state.regime.mode, state.u, m, system, rest, state.a)
+        add_terms(rest, m, system.force, event.terms)
+    f = _closed_of(state.regime.mode, f, state.regime.active, state.regime.active)
+    find_sleepers(model, state.regime, options, state.clock.time, event, f, state.u, state.a)
+    _list_awake_first(model, state.regime, f, event, state.instant)
+
+
+@kernel
+def _correct(state, m, options, inverse, projection, rest, out_trial):
+    """Exact zero gaps and rates of an island's m contacts in force; no slip against the mode where it was too slow to count."""
+    deepest = project_positions(rest, m, True, options.behind, inverse, projection, state.q)
+    state.worst.penetration = max(state.worst.penetration, deepest)
+    for i in range(m):
+        k = rest.ids[i]
+        out_trial[k] = STICK if state.regime.mode[k] * rest.kin[i].gT_dot < 0.0 else state.regime.mode[k]
+    project_velocities(rest, m, out_trial, DEPENDENT_AT_EVENTS, inverse, projection, state.u)
+
+
+@kernel
+def _list_awake_first(model, regime, f, event, out_instant):
+    """Put the contacts of awake bodies first among the f in force."""
+    copy(regime.active, event.in_force)
+    count = 0
+    for awake in (True, False):
+        if not awake:
+            out_instant.awake_contacts, out_instant.sleeping_contacts = count, f - count
+        for j in range(f):
+            k = event.in_force[j]
+            if (regime.awake[island_of(model, event.label, k)] != 0) == awake:
+                regime.active[count] = k
+                count += 1
+    sort_by_island(model, event.label, out_instant.awake_contacts, regime.active, regime.upto)
+
+
+# How does time go on to the next event?
 
 
 @kernel
@@ -108,100 +350,6 @@ def _smooth_step(model, cells, state, options, end_time, scratch, record):
     if event:
         _note_end(state.regime.active, state.instant.awake_contacts, contact, code, scratch.ended)
     return Stop.RUNNING, event
-
-
-# The path of a step drifts off the contacts in force. Drift is taken back, and a contact that ends the step closes where that
-# has been done (docs/theory/method.md 2.10): the next one of two nearly parallel faces would be met late otherwise.
-
-
-@kernel
-def accept_coupled(model, state, options, end, touched, scratch):
-    """Bring the state to time `end` of a coupled step, or to when `touched` closes: sums, positions and velocities.
-
-    Returns (that time, True; False where drift is no rounding).
-    """
-    before = _follow_step(model, state, options, end, scratch)
-    if touched != NO_CONTACT:
-        end, before = _follow_to_touch(model, state, options, (end, before), touched, scratch)
-    smooth = scratch.smooth
-    n = len(model.coordinates)
-    state.sums.drive += smooth.y[2 * n]
-    state.sums.damping += smooth.y[2 * n + 1]
-    state.sums.friction += smooth.y[2 * n + 2]
-    for i in range(n):
-        state.a[i] = smooth.dy[n + i]
-    state.worst.kinetic_energy = max(state.worst.kinetic_energy, before)
-    return end, is_explained(model, options, before, kinetic_energy(model, state.u), state.worst.kinetic_energy)
-
-
-@kernel
-def _follow_to_touch(model, state, options, followed, touched, scratch):
-    """Bring the state, which is where a coupled step ends, to where contact `touched` closes on the way without drift.
-
-    `followed` and what is returned: (time, kinetic energy before drift is taken back, J). The end of the step stays the end
-    where the contact does not close before. Between nearly parallel faces the drift of a contact in force is a long way to the
-    next face.
-    """
-    pose, (end, before) = scratch.smooth.pose, followed
-    tau, kinetic = end, before
-    for _ in range(NEWTON_STEPS):
-        place(model, state.q, state.u, pose)
-        look = normal_gap(model, touched, pose)
-        if abs(look.gap) <= HIDDEN_REBOUND * options.gap_zero:
-            return tau, kinetic
-        if (tau == end and look.gap > 0.0) or look.rate >= 0.0:
-            break
-        earlier = min(tau - look.gap / look.rate, end)
-        if earlier <= 0.0:
-            break
-        tau, kinetic = earlier, _follow_step(model, state, options, earlier, scratch)
-    if tau < end:
-        _follow_step(model, state, options, end, scratch)
-    return end, before
-
-
-@kernel
-def _follow_step(model, state, options, end, scratch):
-    """Positions and velocities at time `end` of a coupled step, drift taken back; returns the kinetic energy before that, J."""
-    step, smooth, projection = scratch.step, scratch.smooth, scratch.projection
-    closed, pose, inverse = smooth.closed, smooth.pose, scratch.work.system.inverse
-    n = len(model.coordinates)
-    for i in range(2 * n + SUMS):
-        value = dense_value(step, i, end) if end < step.span.length else step.y1[i]
-        smooth.y[i] = value
-        if i < n:
-            state.q[i] = value
-        elif i < 2 * n:
-            state.u[i - n] = value
-    for i in range(n):
-        coordinate = model.coordinates[i]
-        if coordinate.driven and coordinate.linear:  # known in closed form: no error of steps adds up
-            state.q[i], state.u[i] = flow(coordinate, OPEN, step.y0[i], step.y0[n + i], end)
-            smooth.y[i], smooth.y[n + i] = state.q[i], state.u[i]
-    motion(model, state.regime, options, step.span.start + end, smooth, state.counts)
-    before = kinetic_energy(model, state.u)
-    first = 0
-    while first < state.instant.awake_contacts:
-        m = place_contacts(model, state.regime.active, first, state.regime.upto[first], pose, closed)
-        deepest = project_positions(closed, m, True, options.behind, inverse, projection, state.q)
-        state.worst.penetration = max(state.worst.penetration, deepest)
-        if _turns_rates(model, state.u, options, m, closed):
-            place(model, state.q, state.u, pose)
-            refresh(model, m, closed, pose)
-        project_velocities(closed, m, state.regime.mode, DEPENDENT_IN_STEPS, inverse, projection, state.u)
-        first += m
-    return before
-
-
-@kernel
-def _turns_rates(model, u, options, m, closed):
-    """True if taking back the gaps of the m contacts changes their rates, by the gap times how fast bodies turn."""
-    furthest, fastest = 0.0, 0.0
-    for i in range(m):
-        furthest = max(furthest, abs(closed.kin[i].g))
-    for i in range(len(u)):
-        fastest = max(fastest, abs(u[i]) / model.coordinates[i].scale)
-    return furthest * fastest > RATES_TURNED * options.speed_zero
 
 
 @kernel

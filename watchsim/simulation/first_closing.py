@@ -578,7 +578,7 @@ def _list(model, cells, state, options, p, span, count, step, path):
 def first_touch(model, cells, state, options, end, scratch):
     """(known, time, contact) of the first closing in [0, end) of the current step, or NO_CONTACT.
 
-    `known` is False when a cell was met that nobody has asked about: it is then in `scratch.asked`. The contact that could
+    `known` is False when an unknown cell was met: it is then in `scratch.requested`. The contact that could
     close first is looked at next: what lies far off is not searched beyond the first closing, however long the step.
     """
     best, who, step, path = end, NO_CONTACT, scratch.step, scratch.path
@@ -588,7 +588,7 @@ def first_touch(model, cells, state, options, end, scratch):
             continue
         known, count = _list(model, cells, state, options, p, (0.0, end), count, step, path)
         if not known:
-            request_cell(scratch.asked, p, path.q)
+            request_cell(scratch.requested, p, path.q)
             return False, 0.0, NO_CONTACT
     while count > 0 and path.waiting[0].stays_open < best:
         first = path.waiting[0]
@@ -597,7 +597,7 @@ def first_touch(model, cells, state, options, end, scratch):
         if k == NO_CONTACT:
             known, count = _list(model, cells, state, options, p, (start, best), count, step, path)
             if not known:
-                request_cell(scratch.asked, p, path.q)
+                request_cell(scratch.requested, p, path.q)
                 return False, 0.0, NO_CONTACT
             continue
         until = min(until, best)

@@ -8,20 +8,146 @@ from __future__ import annotations
 
 import math
 
-from watchsim.contact.gaps import STICK
+import numpy as np
+from numpy.typing import NDArray
+
+from watchsim.contact.gaps import OPEN, STICK, normal_gap, place
 from watchsim.dynamics.delassus import copy
 from watchsim.jit import kernel
-from watchsim.simulation.coupled_motion import EXTENT, TANGENTIAL, engage, motion
-from watchsim.simulation.dop853 import E3, E5, STAGES, A, C, D, dense, dense_value
-from watchsim.simulation.free_motion import is_open, narrowed, next_time, opened, turning_time
+from watchsim.simulation.closed_contacts import is_explained, kinetic_energy, refresh
+from watchsim.simulation.coupled_motion import (
+    EXTENT,
+    TANGENTIAL,
+    engage,
+    motion,
+    place_contacts,
+    project_positions,
+    project_velocities,
+)
 from watchsim.simulation.options import longest_step
 from watchsim.simulation.scratch import COUPLED, MONITORS, SUMS
-from watchsim.simulation.step_path import bound_accelerations
-from watchsim.tolerances import ROOT_RESOLUTION, SLIP_SLACK, SMALLEST_STEP, WITHIN_ENDS
+from watchsim.simulation.state import NO_CONTACT
+from watchsim.simulation.step_path import (
+    bound_accelerations,
+    dense,
+    dense_value,
+    flow,
+    is_open,
+    narrowed,
+    next_time,
+    opened,
+    turning_time,
+)
+from watchsim.tolerances import (
+    DEPENDENT_IN_STEPS,
+    HIDDEN_REBOUND,
+    RATES_TURNED,
+    ROOT_RESOLUTION,
+    SLIP_SLACK,
+    SMALLEST_STEP,
+    WITHIN_ENDS,
+)
+
+# Which numbers define the method DOP853?
+#
+# Dormand & Prince's pair of orders 8(5,3) with a continuous extension of order 7, coefficients as published by Hairer,
+# Noersett & Wanner, Solving Ordinary Differential Equations I, 2nd ed. (1993), II.5 and II.6. Stage 12 is the first stage of
+# the next step; stages 13 to 15 serve the continuous extension alone.
+
+STAGES = 12
+
+
+def _table(rows: int, columns: int, text: str) -> NDArray[np.float64]:
+    """A matrix from its entries, "row: column value, column value, ..."; all others are zero."""
+    table = np.zeros((rows, columns))
+    for line in text.replace(",\n", ",").strip().splitlines():
+        row, entries = line.split(":")
+        for column, value in (entry.split() for entry in entries.split(",")):
+            table[int(row), int(column)] = float(value)
+    return table
+
+
+A = _table(
+    16,
+    16,
+    """
+     1: 0 0.05260015195876773
+     2: 0 0.0197250569845379, 1 0.0591751709536137
+     3: 0 0.02958758547680685, 2 0.08876275643042054
+     4: 0 0.2413651341592667, 2 -0.8845494793282861, 3 0.924834003261792
+     5: 0 0.037037037037037035, 3 0.17082860872947386, 4 0.12546768756682242
+     6: 0 0.037109375, 3 0.17025221101954405, 4 0.06021653898045596, 5 -0.017578125
+     7: 0 0.03709200011850479, 3 0.17038392571223998, 4 0.10726203044637328, 5 -0.015319437748624402,
+        6 0.008273789163814023
+     8: 0 0.6241109587160757, 3 -3.3608926294469414, 4 -0.868219346841726, 5 27.59209969944671,
+        6 20.154067550477894, 7 -43.48988418106996
+     9: 0 0.47766253643826434, 3 -2.4881146199716677, 4 -0.590290826836843, 5 21.230051448181193,
+        6 15.279233632882423, 7 -33.28821096898486, 8 -0.020331201708508627
+    10: 0 -0.9371424300859873, 3 5.186372428844064, 4 1.0914373489967295, 5 -8.149787010746927,
+        6 -18.52006565999696, 7 22.739487099350505, 8 2.4936055526796523, 9 -3.0467644718982196
+    11: 0 2.273310147516538, 3 -10.53449546673725, 4 -2.0008720582248625, 5 -17.9589318631188,
+        6 27.94888452941996, 7 -2.8589982771350235, 8 -8.87285693353063, 9 12.360567175794303,
+        10 0.6433927460157636
+    12: 0 0.054293734116568765, 5 4.450312892752409, 6 1.8915178993145003, 7 -5.801203960010585,
+        8 0.3111643669578199, 9 -0.1521609496625161, 10 0.20136540080403034, 11 0.04471061572777259
+    13: 0 0.056167502283047954, 6 0.25350021021662483, 7 -0.2462390374708025, 8 -0.12419142326381637,
+        9 0.15329179827876568, 10 0.00820105229563469, 11 0.007567897660545699, 12 -0.008298
+    14: 0 0.03183464816350214, 5 0.028300909672366776, 6 0.053541988307438566, 7 -0.05492374857139099,
+        10 -0.00010834732869724932, 11 0.0003825710908356584, 12 -0.00034046500868740456, 13 0.1413124436746325
+    15: 0 -0.42889630158379194, 5 -4.697621415361164, 6 7.683421196062599, 7 4.06898981839711,
+        8 0.3567271874552811, 12 -0.0013990241651590145, 13 2.9475147891527724, 14 -9.15095847217987
+    """,
+)
+C = np.array(
+    (
+        *(
+            0.0,
+            0.05260015195876773,
+            0.0789002279381516,
+            0.1183503419072274,
+            0.2816496580927726,
+            0.3333333333333333,
+            0.25,
+            0.3076923076923077,
+        ),
+        *(0.6512820512820513, 0.6, 0.8571428571428571, 1.0, 1.0, 0.1, 0.2, 0.7777777777777778),
+    )
+)
+# Estimates of the error, of order 3 and of order 5, combined as in the book.
+E3, E5 = _table(
+    2,
+    13,
+    """
+     0: 0 -0.18980075407240762, 5 4.450312892752409, 6 1.8915178993145003, 7 -5.801203960010585,
+        8 -0.4226823213237919, 9 -0.1521609496625161, 10 0.20136540080403034, 11 0.02265179219836082
+     1: 0 0.01312004499419488, 5 -1.2251564463762044, 6 -0.4957589496572502, 7 1.6643771824549864,
+        8 -0.35032884874997366, 9 0.3341791187130175, 10 0.08192320648511571, 11 -0.022355307863886294
+    """,
+)
+# Rows 3 to 6 of the continuous extension.
+D = _table(
+    4,
+    16,
+    """
+     0: 0 -8.428938276109013, 5 0.5667149535193777, 6 -3.0689499459498917, 7 2.38466765651207,
+        8 2.117034582445028, 9 -0.871391583777973, 10 2.2404374302607883, 11 0.6315787787694688,
+        12 -0.08899033645133331, 13 18.148505520854727, 14 -9.194632392478356, 15 -4.436036387594894
+     1: 0 10.427508642579134, 5 242.28349177525817, 6 165.20045171727028, 7 -374.5467547226902,
+        8 -22.113666853125306, 9 7.733432668472264, 10 -30.674084731089398, 11 -9.332130526430229,
+        12 15.697238121770845, 13 -31.139403219565178, 14 -9.35292435884448, 15 35.81684148639408
+     2: 0 19.985053242002433, 5 -387.0373087493518, 6 -189.17813819516758, 7 527.8081592054236,
+        8 -11.57390253995963, 9 6.8812326946963, 10 -1.0006050966910838, 11 0.7777137798053443,
+        12 -2.778205752353508, 13 -60.19669523126412, 14 84.32040550667716, 15 11.99229113618279
+     3: 0 -25.69393346270375, 5 -154.18974869023643, 6 -231.5293791760455, 7 357.6391179106141,
+        8 93.40532418362432, 9 -37.45832313645163, 10 104.0996495089623, 11 29.8402934266605,
+        12 -43.53345659001114, 13 96.32455395918828, 14 -39.17726167561544, 15 -149.72683625798564
+    """,
+)
 
 # When, within a coupled step, does a decided mode end?
 
 SAMPLES = 8
+NEWTON_STEPS = 6  # to where a contact closes without drift
 NONE_FIRED = -1  # in the place of a monitor's code
 
 
@@ -282,3 +408,97 @@ def coupled_step(model, state, options, longest, smooth):
     bound_accelerations(step, n)
     state.counts.steps += 1
     return True, smallest
+
+
+# The path of a step drifts off the contacts in force. Drift is taken back, and a contact that ends the step closes where that
+# has been done (docs/theory/method.md 2.10): the next one of two nearly parallel faces would be met late otherwise.
+
+
+@kernel
+def accept_coupled(model, state, options, end, touched, scratch):
+    """Bring the state to time `end` of a coupled step, or to when `touched` closes: sums, positions and velocities.
+
+    Returns (that time, True; False where drift is no rounding).
+    """
+    before = _follow_step(model, state, options, end, scratch)
+    if touched != NO_CONTACT:
+        end, before = _follow_to_touch(model, state, options, (end, before), touched, scratch)
+    smooth = scratch.smooth
+    n = len(model.coordinates)
+    state.sums.drive += smooth.y[2 * n]
+    state.sums.damping += smooth.y[2 * n + 1]
+    state.sums.friction += smooth.y[2 * n + 2]
+    for i in range(n):
+        state.a[i] = smooth.dy[n + i]
+    state.worst.kinetic_energy = max(state.worst.kinetic_energy, before)
+    return end, is_explained(model, options, before, kinetic_energy(model, state.u), state.worst.kinetic_energy)
+
+
+@kernel
+def _follow_to_touch(model, state, options, followed, touched, scratch):
+    """Bring the state, which is where a coupled step ends, to where contact `touched` closes on the way without drift.
+
+    `followed` and what is returned: (time, kinetic energy before drift is taken back, J). The end of the step stays the end
+    where the contact does not close before. Between nearly parallel faces the drift of a contact in force is a long way to the
+    next face.
+    """
+    pose, (end, before) = scratch.smooth.pose, followed
+    tau, kinetic = end, before
+    for _ in range(NEWTON_STEPS):
+        place(model, state.q, state.u, pose)
+        look = normal_gap(model, touched, pose)
+        if abs(look.gap) <= HIDDEN_REBOUND * options.gap_zero:
+            return tau, kinetic
+        if (tau == end and look.gap > 0.0) or look.rate >= 0.0:
+            break
+        earlier = min(tau - look.gap / look.rate, end)
+        if earlier <= 0.0:
+            break
+        tau, kinetic = earlier, _follow_step(model, state, options, earlier, scratch)
+    if tau < end:
+        _follow_step(model, state, options, end, scratch)
+    return end, before
+
+
+@kernel
+def _follow_step(model, state, options, end, scratch):
+    """Positions and velocities at time `end` of a coupled step, drift taken back; returns the kinetic energy before that, J."""
+    step, smooth, projection = scratch.step, scratch.smooth, scratch.projection
+    closed, pose, inverse = smooth.closed, smooth.pose, scratch.work.system.inverse
+    n = len(model.coordinates)
+    for i in range(2 * n + SUMS):
+        value = dense_value(step, i, end) if end < step.span.length else step.y1[i]
+        smooth.y[i] = value
+        if i < n:
+            state.q[i] = value
+        elif i < 2 * n:
+            state.u[i - n] = value
+    for i in range(n):
+        coordinate = model.coordinates[i]
+        if coordinate.driven and coordinate.linear:  # known in closed form: no error of steps adds up
+            state.q[i], state.u[i] = flow(coordinate, OPEN, step.y0[i], step.y0[n + i], end)
+            smooth.y[i], smooth.y[n + i] = state.q[i], state.u[i]
+    motion(model, state.regime, options, step.span.start + end, smooth, state.counts)
+    before = kinetic_energy(model, state.u)
+    first = 0
+    while first < state.instant.awake_contacts:
+        m = place_contacts(model, state.regime.active, first, state.regime.upto[first], pose, closed)
+        deepest = project_positions(closed, m, True, options.behind, inverse, projection, state.q)
+        state.worst.penetration = max(state.worst.penetration, deepest)
+        if _turns_rates(model, state.u, options, m, closed):
+            place(model, state.q, state.u, pose)
+            refresh(model, m, closed, pose)
+        project_velocities(closed, m, state.regime.mode, DEPENDENT_IN_STEPS, inverse, projection, state.u)
+        first += m
+    return before
+
+
+@kernel
+def _turns_rates(model, u, options, m, closed):
+    """True if taking back the gaps of the m contacts changes their rates, by the gap times how fast bodies turn."""
+    furthest, fastest = 0.0, 0.0
+    for i in range(m):
+        furthest = max(furthest, abs(closed.kin[i].g))
+    for i in range(len(u)):
+        fastest = max(fastest, abs(u[i]) / model.coordinates[i].scale)
+    return furthest * fastest > RATES_TURNED * options.speed_zero

@@ -53,10 +53,10 @@ from watchsim.simulation.moreau_percussions import (
 )
 from watchsim.simulation.options import OptionsRef
 from watchsim.simulation.scratch import (
-    Asked,
-    AskedRef,
+    CellRequest,
+    CellRequestRef,
     RecordRef,
-    asked_of,
+    cell_request,
     keep_event,
     keep_row,
     request_cell,
@@ -89,7 +89,7 @@ class MoreauWork(NamedTuple):
 
     closed: Closed
     laws: Laws
-    asked: Asked
+    requested: CellRequest
     memory: Array  # (contacts, 2)
     kept: KeptSteps
     pose: object
@@ -133,7 +133,7 @@ def moreau_work(model: Model) -> MoreauWork:
         laws=laws(room, len(dry)),
         restitution=np.zeros(room),
         dry=dry,
-        asked=asked_of(n),
+        requested=cell_request(n),
         joint=np.zeros(len(model.joints)),
         **vectors,
         **by_row,
@@ -160,7 +160,7 @@ def closed_at_middle(model, cells, state, options, h, work):
     for p in range(len(model.pairs)):
         how, start, count = candidates(model, cells, p, work.q)
         if how == UNKNOWN:
-            request_cell(work.asked, p, work.q)
+            request_cell(work.requested, p, work.q)
             return Stop.CELL_UNKNOWN, m
         for place_in_list in range(start, start + count):
             k = candidate(model, cells, how, place_in_list)
@@ -443,7 +443,7 @@ def advance_fixed(model, cells, state, options, until, pace, work, record):
 @inlined
 def _by_reference(work):
     """The scratch arrays as a struct; what holds structs itself names them first."""
-    return MoreauWorkRef(ClosedRef(*work.closed), LawsRef(*work.laws), AskedRef(*work.asked), *work[3:])
+    return MoreauWorkRef(ClosedRef(*work.closed), LawsRef(*work.laws), CellRequestRef(*work.requested), *work[3:])
 
 
 @kernel

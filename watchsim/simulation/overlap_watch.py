@@ -292,7 +292,7 @@ def _real(points: Complex) -> Array:
     return np.ascontiguousarray(points).view(np.float64).reshape(*points.shape, 2)
 
 
-_last: list[tuple[Any, float, Layers]] = []  # the scene asked about last, which most often is the next one
+_last: list[tuple[Any, float, Layers]] = []  # the scene looked at last, which most often is the next one
 
 
 def declared_pairs(scene: Any, chord: float) -> Layers:

@@ -197,7 +197,7 @@ def unevenness(marks: Array) -> Array:
 QUANTITIES = ("amplitude", "period", "uneven_ticks", "uneven_passages")
 MOMENTS = ("number", "mean", "squares", "least", "largest")  # squares: of the distances from the mean, summed
 CARRIED = 8  # passages whose events are carried on; a half swing needs four: its beat is compared with those of the two before
-LATE = 120  # half swings whose amplitudes are kept: whether a watch has settled is told by them
+LATE = 120  # half swings whose amplitudes are kept: they show whether a watch has settled
 MOST_CARRIED = 20000  # events, of an oscillator that makes noises but never passes its rest position
 
 
@@ -379,7 +379,7 @@ class Recorder:
             self._finish()
 
     def _stays(self, times: Array) -> Bits:
-        """Rows within the windows, each so many-th, and those next to a window."""
+        """Rows within the windows, every n-th, and those next to a window."""
         windows = self.recording.row_windows
         inside = within(times, windows)
         stays = inside.copy()

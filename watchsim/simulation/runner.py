@@ -300,7 +300,7 @@ class Run:
 
     def _learn(self) -> None:
         """Look up the cell that the loop has met."""
-        self.finder.learn(int(self.scratch.asked.cell.pair), self.scratch.asked.at.copy(), self.state.u)
+        self.finder.learn(int(self.scratch.requested.cell.pair), self.scratch.requested.at.copy(), self.state.u)
 
     def to_the_end(self, duration: float, progress: Progress | None) -> Stop:
         """Run until the duration is over or something ends the run for good."""

@@ -11,9 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.contact.gaps import OPEN, STICK, Closed, ClosedRef, closed_contacts, poses
-from watchsim.dynamics.contact_work import ContactWork, contact_work, contact_work_by_reference
-from watchsim.dynamics.delassus import ContactSystem
-from watchsim.dynamics.redundant import ModeSystem
+from watchsim.dynamics.delassus import ContactSystem, ContactSystemRef, contact_system
+from watchsim.dynamics.friction import FrictionProblem, FrictionProblemRef, friction_problem, problem_size
+from watchsim.dynamics.impact import ImpactPhases, ImpactPhasesRef, impact_phases
+from watchsim.dynamics.lcp import LcpWorkRef, lcp_work
+from watchsim.dynamics.redundant import FreeForcesRef, ModeSystem, ModeSystemRef, mode_system
 from watchsim.jit import by_reference, inlined, kernel
 from watchsim.model import Model, Records, blank, dtype_of, records
 from watchsim.simulation.state import EVENT_DTYPE, EventKind, RegimeRef, StateRef, room_for
@@ -146,6 +148,41 @@ class Step(NamedTuple):
 StepRef = by_reference(Step, __name__)
 
 
+class ContactWork(NamedTuple):
+    """What is written to, and by whom."""
+
+    system: ContactSystem  # what acts on the gaps, and the contact forces: whoever poses a problem
+    modes: ModeSystem  # the equality system of decided modes: `solve_mode`
+    problem: FrictionProblem  # the complementarity problem: `decide_modes`, `impact`, `plastic_impact`
+    phases: ImpactPhases  # impulses and rates of an impact: `impact`, `plastic_impact`
+
+
+ContactWorkRef = by_reference(ContactWork, __name__)
+
+
+def contact_work(room: int, coordinates: int) -> ContactWork:
+    """Room for that many closed contacts."""
+    lcp = lcp_work(problem_size(room, coordinates))
+    return ContactWork(
+        contact_system(room, coordinates),
+        mode_system(room, coordinates, lcp),
+        friction_problem(room, coordinates, lcp),
+        impact_phases(room),
+    )
+
+
+@inlined
+def contact_work_by_reference(work):
+    """As nested structs."""
+    modes, problem = work.modes, work.problem
+    return ContactWorkRef(
+        ContactSystemRef(*work.system),
+        ModeSystemRef(FreeForcesRef(LcpWorkRef(*modes.redundant.lcp), *modes.redundant[1:]), *modes[1:]),
+        FrictionProblemRef(LcpWorkRef(*problem.lcp), *problem[1:]),
+        ImpactPhasesRef(*work.phases),
+    )
+
+
 class Held:
     """What holds for the whole of a coupled step, see `engage`."""
 
@@ -216,7 +253,7 @@ PathRef = by_reference(Path, __name__)
 
 
 class EventRoom(NamedTuple):
-    """The contacts closed at an event (events.py and what it calls)."""
+    """The contacts closed at an event (`handle_event` and what it calls)."""
 
     pose: Any
     closed: Closed  # of one island
@@ -259,22 +296,22 @@ class UnknownCell:
     pair: int  # of bodies
 
 
-class Asked(NamedTuple):
-    """What the loop asks Python about when it comes back with CELL_UNKNOWN."""
+class CellRequest(NamedTuple):
+    """What Python is to look up when the loop comes back with CELL_UNKNOWN."""
 
     cell: UnknownCell
     at: Array  # coordinates
 
 
-AskedRef = by_reference(Asked, __name__)
+CellRequestRef = by_reference(CellRequest, __name__)
 
 
 @kernel
-def request_cell(asked, p, q):
+def request_cell(out_request, p, q):
     """Note the cell of body pair p at coordinates q."""
-    asked.cell.pair = p
+    out_request.cell.pair = p
     for i in range(len(q)):
-        asked.at[i] = q[i]
+        out_request.at[i] = q[i]
 
 
 class Ended:
@@ -294,7 +331,7 @@ class Scratch(NamedTuple):
     path: Path
     event: EventRoom
     impact: ImpactRoom
-    asked: Asked
+    requested: CellRequest
     ended: Ended
 
 
@@ -321,14 +358,14 @@ def scratch_by_reference(scratch):
         PathRef(path.q, path.u, path.pose, ClosedRef(*path.probe), *path[4:]),
         EventRoomRef(event.pose, ClosedRef(*event.closed), ClosedRef(*event.rest), *event[3:]),
         ImpactRoomRef(*scratch.impact),
-        AskedRef(*scratch.asked),
+        CellRequestRef(*scratch.requested),
         scratch.ended,
     )
 
 
-def asked_of(coordinates: int) -> Asked:
+def cell_request(coordinates: int) -> CellRequest:
     """Room for one question."""
-    return Asked(blank(UnknownCell), np.zeros(coordinates))
+    return CellRequest(blank(UnknownCell), np.zeros(coordinates))
 
 
 def _step_room(n: int) -> Step:
@@ -407,6 +444,6 @@ def new_scratch(model: Model) -> Scratch:
         path=_path_room(n, bodies, contacts + len(model.pairs)),
         event=_event_room(n, bodies, contacts, room),
         impact=_impact_room(n, contacts, room),
-        asked=asked_of(n),
+        requested=cell_request(n),
         ended=blank(Ended),
     )

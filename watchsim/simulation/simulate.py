@@ -73,7 +73,7 @@ class MoreauRun(Run):
         return Stop(int(code))
 
     def _learn(self) -> None:
-        self.finder.learn(int(self.work.asked.cell.pair), self.work.asked.at.copy(), self.state.u)
+        self.finder.learn(int(self.work.requested.cell.pair), self.work.requested.at.copy(), self.state.u)
 
     def counts(self) -> dict[str, int]:
         return {**super().counts(), "sweeps": int(self.work.kept.sweeps)}

@@ -189,7 +189,7 @@ class Loop:
         while True:
             stop = self._call(state, until, self._record)
             if stop == Stop.CELL_UNKNOWN:
-                self.finder.learn(int(self._scratch.asked.cell.pair), self._scratch.asked.at.copy(), state.u)
+                self.finder.learn(int(self._scratch.requested.cell.pair), self._scratch.requested.at.copy(), state.u)
                 continue
             events = int(self._record.used.events)
             parts.append(self._record.events[:events].copy())

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from watchsim.contact.gaps import Closed, ClosedRef
 from watchsim.dynamics import acceleration
 from watchsim.dynamics import impact as impacts
-from watchsim.dynamics.contact_work import ContactWork, contact_work_by_reference
 from watchsim.jit import entry
 from watchsim.model import Model, ModelRef
+from watchsim.simulation.scratch import ContactWork, contact_work_by_reference
 
 Array = NDArray[np.float64]
 Codes = NDArray[np.int8]

@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.contact.gaps import OPEN, Closed, closed_contacts
-from watchsim.dynamics.contact_work import ContactWork, contact_work
 from watchsim.dynamics.impact import energy_gain
 from watchsim.dynamics.lcp import LcpOutcome, lcp_work, solve_lcp
 from watchsim.jit import callable_kernel
@@ -30,6 +29,7 @@ from watchsim.model import (
     frozen,
     records,
 )
+from watchsim.simulation.scratch import ContactWork, contact_work
 from watchsim.verification.checks import Row, compared
 from watchsim.verification.contact_problems import decide_modes, impact, solve_mode
 
