@@ -39,7 +39,7 @@ def _rule(name: str, file: str, old: str, new: str, *more: str) -> Rule:
     return Rule(name, tuple(zip(edits[::3], edits[1::3], edits[2::3], strict=True)))
 
 
-LOOP, EVENTS, CLOSED = "simulation/event_loop.py", "simulation/event_loop.py", "simulation/closed_contacts.py"
+STEP, EVENTS, CLOSED = "simulation/integrator.py", "simulation/event_loop.py", "simulation/closed_contacts.py"
 MODES, IMPACTS, MOTION = "simulation/modes.py", "simulation/impacts.py", "simulation/coupled_motion.py"
 CLOSING, FRICTION, IMPACT = "simulation/first_closing.py", "dynamics/friction.py", "dynamics/impact.py"
 FORCES, REDUNDANT, GAPS = "dynamics/acceleration.py", "dynamics/redundant.py", "contact/gaps.py"
@@ -188,16 +188,16 @@ RULES = (
         "if abs(gain) > LAW_ROUNDING else",
         "if abs(gain) > LAW_ROUNDING or (gain != 0.0 and not ON) else",
     ),
-    _rule("closes without drift", LOOP, "    if touched != NO_CONTACT:", "    if touched != NO_CONTACT and ON:"),
+    _rule("closes without drift", STEP, "    if touched != NO_CONTACT:", "    if touched != NO_CONTACT and ON:"),
     _rule(
         "gaps turn rates",
-        LOOP,
+        STEP,
         "if _turns_rates(model, state.u, options, m, closed):",
         "if _turns_rates(model, state.u, options, m, closed) and ON:",
     ),
     _rule(
         "before the end",
-        "simulation/integrator.py",
+        STEP,
         "smooth.held.contacts > 1):",
         "smooth.held.contacts > 1 and ON):",
     ),
