@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 from watchsim.construction import scene_builder as toml
 from watchsim.construction.design import Conflict, Design, dim
-from watchsim.construction.outline import along, angle_of, circle, polar, rounded, to_circle, turned
+from watchsim.construction.outline import along, angle_of, circle, cosine, polar, rounded, sine, to_circle, turned
 from watchsim.construction.parts import (
     Arms,
     BalanceWheel,
@@ -21,6 +21,7 @@ from watchsim.construction.parts import (
     horn_radius,
     impulse_pin,
     safety_roller,
+    too_little_draw,
 )
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
@@ -93,14 +94,6 @@ TEETH = 8
 PITCH = 360.0 / TEETH
 HALF_SPAN = 0.75 * PITCH
 FIRST, SECOND = 1, -1  # the locking stones
-
-
-def sine(degrees: float) -> float:
-    return math.sin(math.radians(degrees))
-
-
-def cosine(degrees: float) -> float:
-    return math.cos(math.radians(degrees))
 
 
 class Points:
@@ -496,10 +489,7 @@ FREE = 0.75  # degrees of the wheel by which a waiting tooth must stand outside 
 
 def conflicts(values: Coaxial) -> Iterator[Conflict]:
     points = Points(values)
-    holds = math.degrees(math.atan(values.friction))
-    if holds >= values.draw:
-        words = f"{values.draw:.4g}° does not hold at a friction of {values.friction:.4g}: more than {holds:.2f}° is needed"
-        yield Conflict("draw", words)
+    yield from too_little_draw(values)
     least = values.draw + points.bank
     if values.undercut < least:
         words = f"must be at least {least:.4g}°, draw and half the lever's travel, so that tips lock and not fronts"

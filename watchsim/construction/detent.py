@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 from watchsim.construction import scene_builder as toml
 from watchsim.construction.design import CHOSEN, ESTIMATE, Conflict, Design, Impossible, dim
-from watchsim.construction.outline import along, angle_of, circle, polar, polygon, to_circle, turned
-from watchsim.construction.parts import Arms, Stone, ToothForm, contour
+from watchsim.construction.outline import along, angle_of, circle, cosine, polar, polygon, sine, to_circle, turned
+from watchsim.construction.parts import Arms, Stone, ToothForm, contour, too_little_draw
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Point
@@ -68,14 +68,6 @@ class Detent:
 # while it unlocks and takes its impulse. A tooth is locked one and a half pitches beyond the line OB; the detent's pivot P lies
 # on the tangent of the tip circle there, so that locking pushes through P, and draw alone turns the detent to its bank.
 # Positive detent angles are counter-clockwise, into the wheel: it unlocks to negative ones. Degrees and millimetres.
-
-
-def sine(degrees: float) -> float:
-    return math.sin(math.radians(degrees))
-
-
-def cosine(degrees: float) -> float:
-    return math.cos(math.radians(degrees))
 
 
 class Points:
@@ -330,10 +322,7 @@ FREE = 0.5  # degrees of the wheel by which a waiting tooth must stand outside t
 
 def conflicts(values: Detent) -> Iterator[Conflict]:
     points = Points(values)
-    holds = math.degrees(math.atan(values.friction))
-    if holds >= values.draw:
-        words = f"{values.draw:.4g}° does not hold at a friction of {values.friction:.4g}: more than {holds:.2f}° is needed"
-        yield Conflict("draw", words)
+    yield from too_little_draw(values)
     if values.undercut < values.draw + values.lock:
         words = f"must be at least {values.draw + values.lock:.4g}°, draw and lock, so that tips lock and not fronts"
         yield Conflict("undercut", words)

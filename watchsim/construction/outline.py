@@ -15,6 +15,14 @@ from watchsim.geometry.primitives import TURN, Arc, Edge, Line, Point
 SMALLER, SMALLEST = 0.8, 1e-3  # steps in which a fillet yields, and the least that is drawn
 
 
+def sine(degrees: float) -> float:
+    return math.sin(math.radians(degrees))
+
+
+def cosine(degrees: float) -> float:
+    return math.cos(math.radians(degrees))
+
+
 def polar(radius: float, degrees: float, centre: Point = (0.0, 0.0)) -> Point:
     """The point at `radius` and `degrees` (counter-clockwise from +x) from `centre`."""
     return (centre[0] + radius * math.cos(math.radians(degrees)), centre[1] + radius * math.sin(math.radians(degrees)))

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import Values
+from watchsim.construction.design import Conflict, Values
 from watchsim.construction.outline import (
     along,
     angle_of,
@@ -58,6 +58,14 @@ class Stone:
             self.at(self.length, 0.0),
         ]
         return rounded(layer, list(zip(corners, (0.0, 0.0, edge, edge), strict=True)))
+
+
+def too_little_draw(values: Values) -> Iterator[Conflict]:
+    """A locking face has to lean by more than the angle of friction."""
+    holds = math.degrees(math.atan(values.friction))
+    if holds >= values.draw:
+        words = f"{values.draw:.4g}° does not hold at a friction of {values.friction:.4g}: more than {holds:.2f}° is needed"
+        yield Conflict("draw", words)
 
 
 # What is the opening between two arms of a wheel?

@@ -12,19 +12,20 @@ from scipy.optimize import brentq
 from watchsim.construction import scene_builder as toml
 from watchsim.construction.design import CHOSEN, ESTIMATE, Conflict, Design, Impossible, dim
 from watchsim.construction.outline import angle_of, circle, polar, rounded, turned
+from watchsim.construction.parts import too_little_draw
 from watchsim.construction.swiss_lever import dart_clearance, pin_reach, rest
 from watchsim.construction.swiss_lever_outlines import (
     LEVER_BORE,
     LEVER_HUB,
     Swiss,
     banking,
-    crescent_needed,
     dart,
     fork,
     locking_foot,
     neck_height,
     roller,
     root_radius,
+    safety_roller_conflicts,
     toe_heel_back,
     tooth_gap,
     wheel,
@@ -283,7 +284,7 @@ def conflicts(values: PinPallet) -> Iterator[Conflict]:
     if not plain:
         design = pin_lever(values)
         yield from _teeth(values, design)
-        yield from _roller(values, design)
+        yield from safety_roller_conflicts(design, "impulse pin")
 
 
 def _plain(values: PinPallet) -> Iterator[Conflict]:
@@ -293,10 +294,7 @@ def _plain(values: PinPallet) -> Iterator[Conflict]:
     if not SPANS[0] <= span <= SPANS[1]:
         words = f"with {values.teeth} teeth the pins embrace {2.0 * span:.4g}°"
         yield Conflict("embraced", f"{words}; {2.0 * SPANS[0]:g}° to {2.0 * SPANS[1]:g}° can be drawn")
-    holds = math.degrees(math.atan(values.friction))
-    if holds >= values.draw:
-        words = f"{values.draw:.4g}° does not hold at a friction of {values.friction:.4g}: more than {holds:.2f}° is needed"
-        yield Conflict("draw", words)
+    yield from too_little_draw(values)
     if values.guard_freedom >= values.lock + values.run:
         words = f"must be less than the total lock, {values.lock + values.run:.4g}°"
         yield Conflict("guard_freedom", f"{words}: the dart is to stop the lever before it unlocks")
@@ -342,18 +340,6 @@ def _teeth(values: PinPallet, design: PinLever) -> Iterator[Conflict]:
     if deepest < floor or used > front:
         most = values.pallet_pin - max(floor - deepest, used - front)
         yield Conflict("pallet_pin", f"must be at most {most:.3g} mm, else a locked pin reaches the floor between the teeth")
-
-
-def _roller(values: PinPallet, design: PinLever) -> Iterator[Conflict]:
-    staff = 0.16 * design.lever_scale
-    if design.safety_radius - design.crescent_depth < 1.1 * staff:
-        yield Conflict(
-            "safety_ratio", f"the crescent would cut into the staff of {2.0 * staff:.3g} mm: the safety roller is too small"
-        )
-    needed = crescent_needed(design)
-    if values.crescent < needed:
-        words = f"must be at least {needed:.4g}°"
-        yield Conflict("crescent", f"{words}: the dart enters the roller that far beside the impulse pin")
 
 
 # What is the outline of a pin-pallet lever?

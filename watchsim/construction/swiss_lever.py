@@ -23,9 +23,9 @@ from watchsim.construction.swiss_lever_outlines import (
     Swiss,
     banking,
     behind,
-    crescent_needed,
     lever,
     roller,
+    safety_roller_conflicts,
     toe_heel_back,
     tooth_gap,
     wheel,
@@ -345,7 +345,8 @@ def conflicts(values: SwissLever) -> Iterator[Conflict]:
         return
     design = swiss(values)
     yield from _pallets(values, design)
-    yield from _roller(values, design)
+    yield from safety_roller_conflicts(design, "jewel")
+    yield from _horn(design)
 
 
 def _counts(values: SwissLever) -> Iterator[Conflict]:
@@ -411,15 +412,7 @@ def _unlocking(design: Swiss) -> Iterator[Conflict]:
             yield Conflict(name, f"{words}, and the tooth that has left the {lets_off} stone would come back into that stone")
 
 
-def _roller(values: SwissLever, design: Swiss) -> Iterator[Conflict]:
-    staff = 0.16 * design.lever_scale
-    if design.safety_radius - design.crescent_depth < 1.1 * staff:
-        yield Conflict(
-            "safety_ratio", f"the crescent would cut into the staff of {2.0 * staff:.3g} mm: the safety roller is too small"
-        )
-    needed = crescent_needed(design)
-    if values.crescent < needed:
-        yield Conflict("crescent", f"must be at least {needed:.4g}°: the dart enters the roller that far beside the jewel")
+def _horn(design: Swiss) -> Iterator[Conflict]:
     centre, half = design.balance_from_bank(-1), design.slot_width / 2.0
     mouth = (half, centre[1] - math.sqrt(design.horn_radius**2 - (half - centre[0]) ** 2))
     end = polar(design.horn_radius, -90.0 + design.horn_end + design.bank, centre)

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 
+from watchsim.construction.design import Conflict
 from watchsim.construction.outline import (
     along,
     angle_of,
@@ -227,6 +229,18 @@ def crescent_needed(design: Swiss) -> float:
             beside = abs(math.degrees(math.atan2(x, y)) - _jewel(design, lever))
             farthest = max(farthest, beside + breadth + play)
     return farthest
+
+
+def safety_roller_conflicts(design: Swiss, pin: str) -> Iterator[Conflict]:
+    """A crescent that is too deep for the staff, or too narrow for the dart beside the `pin`."""
+    staff = STAFF_RADIUS * design.lever_scale
+    if design.safety_radius - design.crescent_depth < 1.1 * staff:
+        yield Conflict(
+            "safety_ratio", f"the crescent would cut into the staff of {2.0 * staff:.3g} mm: the safety roller is too small"
+        )
+    needed = crescent_needed(design)
+    if design.crescent_half < needed:
+        yield Conflict("crescent", f"must be at least {needed:.4g}°: the dart enters the roller that far beside the {pin}")
 
 
 def _dart(design: Swiss, lever: float) -> tuple[float, float]:
