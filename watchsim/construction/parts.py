@@ -51,12 +51,7 @@ class Stone:
 
     def loop(self, layer: str, edge: float) -> Loop:
         """Tip, end, back and face, counter-clockwise; the two edges of the shank rounded by `edge`."""
-        corners = [
-            self.tip,
-            self.at(self.relief, self.width),
-            self.at(self.length, self.width),
-            self.at(self.length, 0.0),
-        ]
+        corners = [self.tip, self.at(self.relief, self.width), self.at(self.length, self.width), self.at(self.length, 0.0)]
         return rounded(layer, list(zip(corners, (0.0, 0.0, edge, edge), strict=True)))
 
 
@@ -130,11 +125,7 @@ class BalanceWheel:
         """The outlines on the layer RIM: outer edge, staff's hole, openings between the arms."""
         r = self.radius
         spokes = Arms(self.arms, ARM * r, max(HUB * r, 2.0 * self.staff), (1.0 - SECTION) * r, FILLET * r)
-        return [
-            circle("RIM", (0.0, 0.0), r),
-            circle("RIM", (0.0, 0.0), self.staff, hole=True),
-            *spokes.windows("RIM"),
-        ]
+        return [circle("RIM", (0.0, 0.0), r), circle("RIM", (0.0, 0.0), self.staff, hole=True), *spokes.windows("RIM")]
 
     def hairspring(self, stud: float) -> dict[str, object]:
         """What a scene says of the hairspring, its stud in that direction (degrees)."""

@@ -430,10 +430,7 @@ class Slot:
         self.edge = min(STONE_EDGE * self.scale, 0.2 * self.width)  # rounding of its back edges
 
     def at(self, t: float, v: float) -> Point:
-        return (
-            self.corner[0] + t * self.u[0] + v * self.w[0],
-            self.corner[1] + t * self.u[1] + v * self.w[1],
-        )
+        return (self.corner[0] + t * self.u[0] + v * self.w[0], self.corner[1] + t * self.u[1] + v * self.w[1])
 
 
 def stone(design: Swiss, side: int) -> Loop:

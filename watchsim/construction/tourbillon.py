@@ -68,10 +68,7 @@ def scene_text(values: Tourbillon) -> str:
         ),
         parts(values, design.balance_pivot[1], more),
         toml.table(
-            "[[gears]]",
-            "the wheel against the carriage: both clockwise",
-            between=("carriage", "wheel"),
-            ratio=values.ratio,
+            "[[gears]]", "the wheel against the carriage: both clockwise", between=("carriage", "wheel"), ratio=values.ratio
         ),
         toml.torque(
             "carriage",

@@ -178,12 +178,7 @@ def groove() -> Benchmark:
     x, y = far * math.sin(half), far * math.cos(half)
     flanks = (Line(x, y, 0.0, 0.0), Line(0.0, 0.0, -x, y))
     disc = Body(
-        "disc",
-        "free",
-        position=(0.0, bottom + drop),
-        mass=0.01,
-        inertia=0.5 * 0.01 * radius**2,
-        loops=(circle(radius),),
+        "disc", "free", position=(0.0, bottom + drop), mass=0.01, inertia=0.5 * 0.01 * radius**2, loops=(circle(radius),)
     )
     scene = Scene(
         "disc in a groove",
@@ -199,9 +194,7 @@ def groove() -> Benchmark:
     checks = (
         Check("first touch [s]", first, time_of(EventKind.IMPACT, 1)),
         Check(
-            "end of the bouncing [s]",
-            first * (1.0 + restitution) / (1.0 - restitution),
-            value_of(EventKind.ACCUMULATION, 1),
+            "end of the bouncing [s]", first * (1.0 + restitution) / (1.0 - restitution), value_of(EventKind.ACCUMULATION, 1)
         ),
         Check("height at the end [m]", bottom, lambda run: float(run.q[-1, 1])),
         Check("sideways at the end [m]", 0.0, lambda run: float(run.q[-1, 0]), 1e-12),

@@ -84,9 +84,7 @@ class Toy:
     def gaps(self) -> Array:
         """(3,) gaps with all coordinates zero; they are linear in the coordinates."""
         play = self.sleeve_radius - self.pole_radius
-        return np.array(
-            [self.sleeve_to_spring + self.spring_to_bird - self.beak_length - self.pole_radius, play, play],
-        )
+        return np.array([self.sleeve_to_spring + self.spring_to_bird - self.beak_length - self.pole_radius, play, play])
 
 
 @dataclass(frozen=True)
