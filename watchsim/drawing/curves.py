@@ -34,6 +34,7 @@ from watchsim.drawing.projection import (
 from watchsim.drawing.splines import SAME, Follower
 from watchsim.geometry.biarcs import Array, Curve
 from watchsim.geometry.fitting import Fit, fit_all
+from watchsim.geometry.loops import QUARTER
 from watchsim.geometry.primitives import TURN, Arc, Edge, moved, reflected
 from watchsim.geometry.recognition import put_together
 
@@ -229,7 +230,6 @@ def bezier_points(spline: Spline) -> Array:
 
 # Ellipses are cut at the ends of their axes.
 
-QUARTER = 0.5 * math.pi
 SLIVER = 0.02  # radians of the parameter
 
 

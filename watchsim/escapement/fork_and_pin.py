@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from watchsim.escapement.by_hand import WIDTH, Array, Hands, Integers, Parts, Rest, Stretch, Touch
+from watchsim.geometry.primitives import GOLDEN
 
 # One measured number: its mean over the teeth, the tooth that is furthest from it, and how exact it is.
 
@@ -336,7 +337,6 @@ def _turns(angle: float) -> float:
 
 SCAN = math.radians(1.0)  # of the balance
 FINE = 1e-9  # rad of the balance: the worst place is known to that
-GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 FACES_CRESCENT = 1.5  # times the guard's freedom: the dart faces the crescent and the horns have to guard
 
 

@@ -41,14 +41,13 @@ from watchsim.geometry.biarcs import (
     of_chosen,
     shares,
 )
-from watchsim.geometry.primitives import Edge, Line
+from watchsim.geometry.primitives import GOLDEN, Edge, Line
 
 # Where a curve pauses, turns back or changes its curvature at once the arcs take its own tangent, on either side.
 
 LOOKS = 32  # places in each span where the speed is looked at
 SLOW = 0.2  # of the usual speed: a minimum below that is looked at more closely
 NARROWINGS = 45  # by the golden section, to 1e-9 of a step
-GOLDEN = 0.6180339887498949
 STILL = 1e-12  # of the whole: a step of no length
 LITTLE = 1e-30  # 1/m: no change of curvature
 SLIVER = 1e-4  # of a span: nothing shorter is cut off

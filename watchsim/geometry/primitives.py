@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 Point = tuple[float, float]
 TURN = 2.0 * math.pi
+GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)  # of an interval: where golden-section search looks
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,7 +23,7 @@ from watchsim.mechanism.words import force_lines, law_words, length, place, turn
 from watchsim.scene.roles import frequency, keeps_time, loads, oscillators, partners, roles
 from watchsim.scene.scene import Body, Scene
 from watchsim.scene.solids import HAIRSPRING, LYING, PLATE, UPRIGHT, Solid, total
-from watchsim.scene.trains import Weighed, is_still
+from watchsim.scene.trains import ON_PIVOT, Weighed, is_still
 from watchsim.units import metric, show, to
 
 # How many pairs of primitives are declared between two bodies, how many can ever touch, how many are candidates at a time?
@@ -78,7 +78,6 @@ def _named(compiled: Compiled, pair: Any, body: int, names: Sequence[str]) -> st
 # None of it is wrong by itself; all of it is easily overlooked. `watchsim check` lists it, `watchsim run` says it first.
 
 AT_REST = 1e-9  # rad or m, and per s: nearer than that to its rest position a body stands there
-POISED = 1e-9  # of a body's radius of gyration
 
 
 def notes(scene: Scene) -> tuple[Finding, ...]:
@@ -119,7 +118,7 @@ def _by_outline(scene: Scene) -> Iterator[Finding]:
 
 
 def _is_off(body: Body) -> bool:
-    return math.hypot(*body.centre_of_mass) > POISED * math.sqrt(body.inertia / body.mass) if body.mass > 0.0 else False
+    return math.hypot(*body.centre_of_mass) > ON_PIVOT * math.sqrt(body.inertia / body.mass) if body.mass > 0.0 else False
 
 
 def _unused_lift(scene: Scene) -> Iterator[Finding]:
@@ -268,7 +267,7 @@ def _poise_lines(scene: Scene, body: Body, load: Weighed) -> Iterator[str]:
     """What a centre of mass beside the pivot does: gravity turns the body; the pull on the pivot itself moves nothing."""
     moment = math.hypot(*load.moment)
     distance = moment / load.mass if load.mass > 0.0 else 0.0
-    if body.motion != "pivot" or body.prescribed is not None or distance <= POISED * (_reach(body) or distance):
+    if body.motion != "pivot" or body.prescribed is not None or distance <= ON_PIVOT * (_reach(body) or distance):
         return
     pull = math.hypot(*scene.gravity)
     whose = "the common" if load.mass > body.mass else "its"

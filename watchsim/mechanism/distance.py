@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from watchsim.contact.edge_distance import EDGE, depth_profile, edge_records, nearest_edges, place_edges, point_on
 from watchsim.contact.gaps import closed_contacts, every_contact, poses
 from watchsim.geometry.loops import Loop, winding
-from watchsim.geometry.primitives import Edge, Point
+from watchsim.geometry.primitives import GOLDEN, Edge, Point
 from watchsim.jit import callable_kernel
 from watchsim.mechanism.compile import compile_scene
 from watchsim.model import KIND_WORD, Model, records
@@ -28,7 +28,6 @@ from watchsim.scene.scene import Body, Scene
 Outline = Loop | Sequence[Loop]
 Vector = tuple[float, float, float]
 SAMPLES = 65  # per edge, in the search for the deepest point
-GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 
 CONTACT_ROW = np.dtype(
     [

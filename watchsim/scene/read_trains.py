@@ -13,7 +13,7 @@ from watchsim.scene.errors import Faults
 from watchsim.scene.forces import Contact, Damping, Mainspring, Torque
 from watchsim.scene.keys import GEAR, TRAIN, nearest
 from watchsim.scene.scene import Body, Gear, Geared
-from watchsim.scene.trains import CARRIED, Ride, Weighed, note_gears, reached, rides, weigh
+from watchsim.scene.trains import CARRIED, ON_PIVOT, Ride, Weighed, note_gears, reached, rides, weigh
 from watchsim.scene.values import NAN, Table, listed
 from watchsim.units import NUMBER, PER_LENGTH, TRAVEL_PER_TURN, Dimension
 
@@ -23,7 +23,6 @@ from watchsim.units import NUMBER, PER_LENGTH, TRAVEL_PER_TURN, Dimension
 # others, is turned by gravity or has a spring, else the first named.
 
 SAME = 1e-9  # of a velocity that is given twice
-POISED = 1e-9  # of the radius of gyration: a centre of mass nearer to the pivot is not turned by gravity
 DIMENSION: dict[tuple[str, str], Dimension] = {  # of a ratio, by the motions of the first and the second body
     ("pivot", "pivot"): NUMBER,
     ("pivot", "slide"): TRAVEL_PER_TURN,
@@ -110,7 +109,7 @@ def _pulled(bodies: tuple[Body, ...], hung: tuple[Ride, ...], weighed: tuple[Wei
         for body, ride, load in zip(bodies, hung, weighed, strict=True)
         if body.motion == "pivot"
         and ride.host < 0
-        and math.hypot(*load.moment) > POISED * math.sqrt(abs(load.mass * load.inertia))
+        and math.hypot(*load.moment) > ON_PIVOT * math.sqrt(abs(load.mass * load.inertia))
     )
 
 

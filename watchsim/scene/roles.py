@@ -15,7 +15,7 @@ from watchsim.geometry.primitives import Point
 from watchsim.scene.forces import Side, Spring
 from watchsim.scene.scene import Body, Scene
 from watchsim.scene.teeth import FEWEST_TEETH, teeth_of, train
-from watchsim.scene.trains import Ride, Weighed, felt, rides, weigh
+from watchsim.scene.trains import ON_PIVOT, Ride, Weighed, felt, rides, weigh
 
 # What swings about which rest position, by springs and by gravity, and how fast?
 #
@@ -24,7 +24,6 @@ from watchsim.scene.trains import Ride, Weighed, felt, rides, weigh
 
 Loads = tuple[tuple[Ride, ...], tuple[Weighed, ...], tuple[float, ...]]
 
-POISED = 1e-9  # of the radius of gyration: a centre of mass nearer to the pivot lies on it, but for rounding
 HALVINGS = 200
 
 # Asked for every spring and damper of a scene; a body's outlines make comparing longer than weighing.
@@ -152,7 +151,7 @@ def _weight(load: Weighed, ride: Ride, gravity: Point) -> tuple[float, float]:
     """The largest torque of gravity (N·m), and the angle (rad, as the scene gives it) at which the body hangs."""
     (sx, sy), (gx, gy) = load.moment, gravity
     # What could not be read is passed on as not-a-number: it has been complained of.
-    if ride.host >= 0 or math.hypot(sx, sy) <= POISED * math.sqrt(abs(load.mass * load.inertia)):
+    if ride.host >= 0 or math.hypot(sx, sy) <= ON_PIVOT * math.sqrt(abs(load.mass * load.inertia)):
         return 0.0, 0.0
     along, across = sx * gx + sy * gy, sx * gy - sy * gx
     return math.hypot(along, across), math.atan2(across, along) - ride.angle

@@ -21,6 +21,7 @@ from watchsim.scene.scene import Body, Scene
 # diagonal (docs/theory/method.md 2.1) is resolved here, the rest is refused by name.
 
 MOVEMENT, NOWHERE = -1, -2  # in the place of a host's number
+ON_PIVOT = 1e-9  # of the radius of gyration: a centre of mass nearer to the pivot lies on it, but for rounding
 POISED = 1e-6  # of a body's reach: a centre of mass nearer to the pivot than that lies on it
 Complain = Callable[[str, str], None]  # takes the name of a body and what is wrong with how it is carried
 
