@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import CHOSEN, Conflict, Design, dim
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim, sheets_of
 from watchsim.construction.outline import circle, polygon
 from watchsim.drawing.write import Sheet
 
@@ -90,7 +90,7 @@ def draw(values: Cam) -> dict[str, Sheet]:
     half, top = 0.6 * values.roller_radius, SHAFT * values.roller_radius
     shaft = polygon("SHAFT", [(half, 0.0), (half, top), (-half, top), (-half, 0.0)])
     follower = [circle("END", (0.0, 0.0), values.roller_radius), shaft]
-    return {"cam": Sheet(tuple(cam)), "follower": Sheet(tuple(follower))}
+    return sheets_of(cam=cam, follower=follower)
 
 
 def conflicts(values: Cam) -> Iterator[Conflict]:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import Conflict, Design, dim
+from watchsim.construction.design import Conflict, Design, dim, sheets_of
 from watchsim.construction.outline import along, angle_of, circle, cosine, polar, rounded, sine, to_circle, turned
 from watchsim.construction.parts import (
     Arms,
@@ -479,8 +479,7 @@ def scene_text(values: Coaxial) -> str:
 def sheets(values: Coaxial) -> dict[str, Sheet]:
     """File name without ending -> the part. ValueError where a fillet does not fit."""
     points = Points(values)
-    parts = {"escape_wheel": wheel(points), "lever": lever(points), "roller": roller(points), "banking": banking(points)}
-    return {name: Sheet(tuple(loops)) for name, loops in parts.items()}
+    return sheets_of(escape_wheel=wheel(points), lever=lever(points), roller=roller(points), banking=banking(points))
 
 
 INSIDE = 1.0  # degrees of the balance by which the roller stone must be inside the overlap when the wheel is let go

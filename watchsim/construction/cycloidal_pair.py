@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from watchsim.construction.design import CHOSEN, Conflict, Design, Impossible, dim
+from watchsim.construction.design import CHOSEN, Conflict, Design, Impossible, dim, sheets_of
 from watchsim.construction.outline import arc_between, polar
 from watchsim.construction.parts import arc_through, gear_outline, gear_pair_scene, other_flank
 from watchsim.drawing.write import Sheet
@@ -217,7 +217,7 @@ def conflicts(values: CycloidalPair) -> Iterator[Conflict]:
 
 def draw(values: CycloidalPair) -> dict[str, Sheet]:
     """Pinion and wheel."""
-    return {"pinion": Sheet(tuple(pinion_outline(Pinion(values)))), "wheel": Sheet(tuple(wheel_outline(Wheel(values))))}
+    return sheets_of(pinion=pinion_outline(Pinion(values)), wheel=wheel_outline(Wheel(values)))
 
 
 def scene_text(values: CycloidalPair) -> str:

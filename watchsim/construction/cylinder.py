@@ -10,7 +10,7 @@ from functools import cached_property
 from scipy.optimize import brentq
 
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import CHOSEN, ESTIMATE, Conflict, Design, Impossible, dim
+from watchsim.construction.design import CHOSEN, ESTIMATE, Conflict, Design, Impossible, dim, sheets_of
 from watchsim.construction.outline import angle_of, arc_between, arc_of_radius, circle, fillet_chain, polar
 from watchsim.construction.parts import Arms, BalanceWheel, balance_wheel
 from watchsim.drawing.write import Sheet
@@ -369,7 +369,7 @@ def scene_text(values: Cylinder) -> str:
 def draw(values: Cylinder) -> dict[str, Sheet]:
     """Wheel, and balance with its cylinder."""
     made = shell(values)
-    return {"escape_wheel": Sheet(tuple(wheel(made))), "balance": Sheet(tuple(balance(made)))}
+    return sheets_of(escape_wheel=wheel(made), balance=balance(made))
 
 
 DESIGN = Design("cylinder", "Cylinder escapement of a watch with its balance", Cylinder, draw, scene_text, conflicts)

@@ -27,6 +27,7 @@ from typing import Any
 from watchsim.drawing.drawing import SNAP, Drawing
 from watchsim.drawing.read import read_data
 from watchsim.drawing.write import Sheet
+from watchsim.geometry.loops import Loop
 
 _KEY = "dimension"
 CHOSEN, ESTIMATE = "chosen for this design", "estimate: not published"  # sources of many dimensions
@@ -70,6 +71,11 @@ def dim(default: float, unit: str, low: float, high: float, meaning: str, source
 def dimensions_of(values: type[Any]) -> tuple[Dimension, ...]:
     """The dimensions that a dataclass of values declares with `dim`, in its order."""
     return tuple(Dimension(one.name, **one.metadata[_KEY]) for one in fields(values) if _KEY in one.metadata)
+
+
+def sheets_of(**parts: Iterable[Loop]) -> dict[str, Sheet]:
+    """Outlines by the file name of their part, as sheets."""
+    return {name: Sheet(tuple(loops)) for name, loops in parts.items()}
 
 
 @lru_cache(maxsize=256)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import CHOSEN, ESTIMATE, Conflict, Design, Impossible, dim
+from watchsim.construction.design import CHOSEN, ESTIMATE, Conflict, Design, Impossible, dim, sheets_of
 from watchsim.construction.outline import along, angle_of, circle, cosine, polar, polygon, sine, to_circle, turned
 from watchsim.construction.parts import Arms, Stone, ToothForm, contour, too_little_draw
 from watchsim.drawing.write import Sheet
@@ -306,14 +306,8 @@ def scene_text(values: Detent) -> str:
 def sheets(values: Detent) -> dict[str, Sheet]:
     """File name without ending -> the part. ValueError where a fillet does not fit."""
     points = Points(values)
-    parts = {
-        "escape_wheel": wheel(points),
-        "detent": detent(points),
-        "passing_spring": passing(points),
-        "roller": roller(points),
-        "banking": banking(points),
-    }
-    return {name: Sheet(tuple(loops)) for name, loops in parts.items()}
+    movement = {"escape_wheel": wheel(points), "roller": roller(points), "banking": banking(points)}
+    return sheets_of(**movement, detent=detent(points), passing_spring=passing(points))
 
 
 THIN = 1.3  # of the staff's radius: the least that holds the discharging stone

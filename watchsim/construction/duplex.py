@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import CHOSEN, ESTIMATE, Conflict, Design, Impossible, dim
+from watchsim.construction.design import CHOSEN, ESTIMATE, Conflict, Design, Impossible, dim, sheets_of
 from watchsim.construction.outline import along, arc_between, circle, polar, rounded, turned
 from watchsim.construction.parts import Arms, BalanceWheel, Stone, ToothForm, balance_wheel, contour, tooth_and_gap
 from watchsim.drawing.write import Sheet
@@ -262,7 +262,7 @@ def scene_text(values: Duplex) -> str:
 def draw(values: Duplex) -> dict[str, Sheet]:
     """Wheel, and balance with roller and pallet."""
     points = DuplexPoints(values)
-    return {"escape_wheel": Sheet(tuple(wheel(points))), "balance": Sheet(tuple(balance(points)))}
+    return sheets_of(escape_wheel=wheel(points), balance=balance(points))
 
 
 DESIGN = Design("duplex", "Duplex escapement of a watch with its balance", Duplex, draw, scene_text, conflicts)

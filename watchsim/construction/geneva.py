@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import CHOSEN, Conflict, Design, dim
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim, sheets_of
 from watchsim.construction.outline import arc_between, around, circle, polar
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
@@ -181,7 +181,7 @@ def sector(values: Geneva) -> list[Edge]:
 
 def draw(values: Geneva) -> dict[str, Sheet]:
     """Driver and wheel."""
-    return {"driver": Sheet(tuple(driver(values))), "wheel": Sheet(tuple(wheel(values)))}
+    return sheets_of(driver=driver(values), wheel=wheel(values))
 
 
 DESIGN = Design("geneva", "Geneva drive with a locking disc", Geneva, draw, scene_text, conflicts)

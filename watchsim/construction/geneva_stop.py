@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from watchsim.construction import geneva as of_drive
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import CHOSEN, Conflict, Design, dim
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim, sheets_of
 from watchsim.construction.geneva import (
     BORE_WHEEL,
     Geneva,
@@ -140,7 +140,7 @@ def scene_text(values: GenevaStop) -> str:
 
 def draw(values: GenevaStop) -> dict[str, Sheet]:
     """Arbor with finger and disc, and the cross."""
-    return {"arbor": Sheet(tuple(driver(values.drive))), "cross": Sheet(tuple(cross(values.drive)))}
+    return sheets_of(arbor=driver(values.drive), cross=cross(values.drive))
 
 
 DESIGN = Design(

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import CHOSEN, Conflict, Design, dim
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim, sheets_of
 from watchsim.construction.outline import circle, polygon
 from watchsim.drawing.write import Sheet
 
@@ -80,10 +80,8 @@ def draw(values: Governor) -> dict[str, Sheet]:
     far, half = values.reach, 0.5 * values.thickness
     vanes = polygon("VANES", [(-far, -half), (far, -half), (far, half), (-far, half)])
     collar = max(0.1 * values.reach, values.thickness)
-    return {
-        "drum": Sheet((circle("DRUM", (0.0, 0.0), values.drum_radius),)),
-        "fly": Sheet((vanes, circle("COLLAR", (0.0, 0.0), collar))),
-    }
+    drum = circle("DRUM", (0.0, 0.0), values.drum_radius)
+    return sheets_of(drum=[drum], fly=[vanes, circle("COLLAR", (0.0, 0.0), collar)])
 
 
 def conflicts(values: Governor) -> Iterator[Conflict]:

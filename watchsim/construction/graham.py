@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import CHOSEN, Conflict, Design, Impossible, dim
+from watchsim.construction.design import CHOSEN, Conflict, Design, Impossible, dim, sheets_of
 from watchsim.construction.outline import along, angle_of, arc_between, around, circle, polar, turned
 from watchsim.construction.parts import pendulum, pendulum_clock
 from watchsim.drawing.write import Sheet
@@ -300,7 +300,7 @@ def draw(values: Graham) -> dict[str, Sheet]:
     """Wheel, and pendulum with its anchor."""
     anchor, size = Anchor(values), values.tip_radius
     hanging = pendulum(values, [pallet(anchor, side) for side in (1, -1)], arms(anchor), BORE * size, ROD * size)
-    return {"escape_wheel": Sheet(tuple(wheel(values))), "pendulum": Sheet(tuple(hanging))}
+    return sheets_of(escape_wheel=wheel(values), pendulum=hanging)
 
 
 DESIGN = Design("graham", "Graham's dead-beat escapement with its pendulum", Graham, draw, scene_text, conflicts)

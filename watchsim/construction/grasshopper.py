@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import CHOSEN, Conflict, Design, dim
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim, sheets_of
 from watchsim.construction.outline import angle_of, circle, polar, polygon, turned
 from watchsim.construction.parts import Arms
 from watchsim.drawing.write import Sheet
@@ -275,8 +275,7 @@ WEAKEST, STRONGEST = 1.06, 1.12  # amplitude that the drive sustains, by release
 def draw(values: Grasshopper) -> dict[str, Sheet]:
     """Wheel, pendulum with frame, the two pallets."""
     at = points(values)
-    sheets = {"wheel": wheel(at), "pendulum": pendulum(at), "entry": pallet(at, ENTRY), "exit": pallet(at, EXIT)}
-    return {name: Sheet(tuple(loops)) for name, loops in sheets.items()}
+    return sheets_of(wheel=wheel(at), pendulum=pendulum(at), entry=pallet(at, ENTRY), exit=pallet(at, EXIT))
 
 
 def scene(values: Grasshopper) -> str:

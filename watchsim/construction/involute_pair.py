@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from watchsim.construction.design import CHOSEN, Conflict, Design, dim
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim, sheets_of
 from watchsim.construction.outline import arc_between, polar
 from watchsim.construction.parts import arc_through, gear_outline, gear_pair_scene, other_flank
 from watchsim.drawing.write import Sheet
@@ -207,7 +207,7 @@ def conflicts(values: InvolutePair) -> Iterator[Conflict]:
 def draw(values: InvolutePair) -> dict[str, Sheet]:
     """Pinion and wheel."""
     pinion, wheel = pair(values)
-    return {"pinion": Sheet(tuple(outline(pinion))), "wheel": Sheet(tuple(outline(wheel)))}
+    return sheets_of(pinion=outline(pinion), wheel=outline(wheel))
 
 
 def scene_text(values: InvolutePair) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import CHOSEN, Conflict, Design, dim
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim, sheets_of
 from watchsim.construction.outline import circle, polar, polygon, rounded
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
@@ -186,7 +186,7 @@ def scene_text(values: Jumper) -> str:
 
 def draw(values: Jumper) -> dict[str, Sheet]:
     """Star, jumper and finger."""
-    return {part.__name__: Sheet(tuple(part(values))) for part in (star, jumper, finger)}
+    return sheets_of(star=star(values), jumper=jumper(values), finger=finger(values))
 
 
 DESIGN = Design("jumper", "Calendar star with jumper and finger", Jumper, draw, scene_text, conflicts)

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import CHOSEN, ESTIMATE, Conflict, Design, Impossible, dim
+from watchsim.construction.design import CHOSEN, ESTIMATE, Conflict, Design, Impossible, dim, sheets_of
 from watchsim.construction.outline import angle_of, circle, polar, rounded, turned
 from watchsim.construction.parts import too_little_draw
 from watchsim.construction.swiss_lever import dart_clearance, pin_reach, rest
@@ -426,13 +426,8 @@ def scene_text(values: PinPallet) -> str:
 def draw(values: PinPallet) -> dict[str, Sheet]:
     """Its four sheets."""
     design = pin_lever(values)
-    parts = {
-        "escape_wheel": wheel(design),
-        "lever": pin_pallet_lever(design),
-        "roller": roller(design, values.balance_inertia),
-        "banking": banking(design),
-    }
-    return {name: Sheet(tuple(loops)) for name, loops in parts.items()}
+    balance = roller(design, values.balance_inertia)
+    return sheets_of(escape_wheel=wheel(design), lever=pin_pallet_lever(design), roller=balance, banking=banking(design))
 
 
 DESIGN = Design("pin_pallet", "Pin-pallet (Roskopf) lever escapement with its balance", PinPallet, draw, scene_text, conflicts)

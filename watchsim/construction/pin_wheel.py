@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import CHOSEN, Conflict, Design, dim
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim, sheets_of
 from watchsim.construction.outline import angle_of, arc_between, circle, polar, rounded, turned
 from watchsim.construction.parts import Arms, pendulum, pendulum_clock
 from watchsim.drawing.write import Sheet
@@ -264,7 +264,7 @@ def draw(values: PinWheel) -> dict[str, Sheet]:
     """Wheel, and pendulum with its anchor."""
     anchor, size = PinAnchor(values), values.pin_circle
     hanging = pendulum(values, [pallet(anchor, side) for side in (1, -1)], arms(anchor), HOLE * size, ROD * size)
-    return {"escape_wheel": Sheet(tuple(wheel(anchor))), "pendulum": Sheet(tuple(hanging))}
+    return sheets_of(escape_wheel=wheel(anchor), pendulum=hanging)
 
 
 DESIGN = Design("pin_wheel", "Pin-wheel escapement of a tower clock with its pendulum", PinWheel, draw, scene_text, conflicts)

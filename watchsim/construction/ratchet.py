@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import CHOSEN, Conflict, Design, dim
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim, sheets_of
 from watchsim.construction.outline import along, angle_of, circle, polar, polygon
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
@@ -144,7 +144,7 @@ NARROWEST = 20.0  # degrees
 
 def draw(values: Ratchet) -> dict[str, Sheet]:
     """Wheel and click."""
-    return {"wheel": Sheet(tuple(wheel(values))), "click": Sheet(tuple(click(values)))}
+    return sheets_of(wheel=wheel(values), click=click(values))
 
 
 def conflicts(values: Ratchet) -> Iterator[Conflict]:

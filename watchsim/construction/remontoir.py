@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from watchsim.construction import scene_builder as toml
 from watchsim.construction import swiss_lever as lever
-from watchsim.construction.design import CHOSEN, Conflict, Design, Impossible, dim
+from watchsim.construction.design import CHOSEN, Conflict, Design, Impossible, dim, sheets_of
 from watchsim.construction.outline import arc_between, circle, polar, polygon
 from watchsim.construction.swiss_lever import CLEAR, ESTIMATE, SwissLever, swiss, wheel_angle
 from watchsim.construction.swiss_lever import draw as draw_lever
@@ -243,8 +243,7 @@ SURE, SPARE = 1.5, 1.1  # times what lets a tooth go, and times what winds the s
 
 def draw(values: Remontoir) -> dict[str, Sheet]:
     """The sheets of the lever, stop wheel and stop lever."""
-    own = {"stop_wheel": Sheet(tuple(stop_wheel(values))), "stop_lever": Sheet(tuple(stop_lever(values)))}
-    return {**draw_lever(values), **own}
+    return draw_lever(values) | sheets_of(stop_wheel=stop_wheel(values), stop_lever=stop_lever(values))
 
 
 def conflicts(values: Remontoir) -> Iterator[Conflict]:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import CHOSEN, Conflict, Design, dim
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim, sheets_of
 from watchsim.construction.outline import along, angle_of, arc_between, circle, polar, polygon, turned
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
@@ -224,7 +224,7 @@ QUIET = 0.25  # of the time on a step that the rack may take to fall there
 
 def draw(values: Snail) -> dict[str, Sheet]:
     """Snail, rack and stop."""
-    return {part.__name__: Sheet(tuple(part(values))) for part in (snail, rack, stop)}
+    return sheets_of(snail=snail(values), rack=rack(values), stop=stop(values))
 
 
 def conflicts(values: Snail) -> Iterator[Conflict]:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import CHOSEN, Conflict, Design, Impossible, dim
+from watchsim.construction.design import CHOSEN, Conflict, Design, Impossible, dim, sheets_of
 from watchsim.construction.outline import along, angle_of, polar, turned
 from watchsim.construction.parts import edge_half
 from watchsim.construction.swiss_lever_outlines import (
@@ -508,8 +508,7 @@ def sheets(swiss: Swiss, inertia: float = INERTIA) -> dict[str, Sheet]:
 
     ValueError where a fillet does not fit.
     """
-    parts = {"escape_wheel": wheel(swiss), "lever": lever(swiss), "roller": roller(swiss, inertia), "banking": banking(swiss)}
-    return {name: Sheet(tuple(loops)) for name, loops in parts.items()}
+    return sheets_of(escape_wheel=wheel(swiss), lever=lever(swiss), roller=roller(swiss, inertia), banking=banking(swiss))
 
 
 def draw(values: SwissLever) -> dict[str, Sheet]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import Design, dim
+from watchsim.construction.design import Design, dim, sheets_of
 from watchsim.construction.outline import rounded
 from watchsim.construction.swiss_lever import ESTIMATE, SwissLever, conflicts, parts, rest, swiss
 from watchsim.construction.swiss_lever import draw as draw_lever
@@ -90,7 +90,7 @@ def draw(values: Tourbillon) -> dict[str, Sheet]:
     """The sheets of the lever, and the carriage about the balance's axis."""
     scale = swiss(values).balance_pivot[1]
     bridge = rounded("BRIDGE", [((scale * x, scale * y), scale * radius) for x, y, radius in BRIDGE])
-    return {**draw_lever(values), "carriage": Sheet((bridge,))}
+    return draw_lever(values) | sheets_of(carriage=[bridge])
 
 
 DESIGN = Design("tourbillon", "Swiss lever on the carriage of a tourbillon", Tourbillon, draw, scene_text, conflicts)

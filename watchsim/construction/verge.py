@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import CHOSEN, Conflict, Design, dim
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim, sheets_of
 from watchsim.construction.outline import circle, polygon, rounded
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
@@ -199,11 +199,7 @@ NARROWEST = 3.0  # degrees of a tooth
 
 def draw(values: Verge) -> dict[str, Sheet]:
     """The verge with its foliot, and the two sides of the crown wheel."""
-    return {
-        "verge": Sheet((*verge(values), *foliot(values))),
-        "near_side": Sheet(tuple(near_side(values))),
-        "far_side": Sheet(tuple(far_side(values))),
-    }
+    return sheets_of(verge=[*verge(values), *foliot(values)], near_side=near_side(values), far_side=far_side(values))
 
 
 def conflicts(values: Verge) -> Iterator[Conflict]:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from watchsim.construction import ratchet
 from watchsim.construction import scene_builder as toml
-from watchsim.construction.design import CHOSEN, Conflict, Design, dim
+from watchsim.construction.design import CHOSEN, Conflict, Design, dim, sheets_of
 from watchsim.construction.outline import along, angle_of, circle, polar, polygon
 from watchsim.construction.ratchet import Ratchet
 from watchsim.drawing.write import Sheet
@@ -174,7 +174,7 @@ def draw(values: WindingClick) -> dict[str, Sheet]:
     r, low, wide = values.nose_radius, -values.click_length, FOOT * values.nose_radius
     arm = polygon("ARM", [(-r, low), (r, low), (wide, 0.0), (-wide, 0.0)])
     click = [circle("NOSE", (0.0, low), r), arm, circle("FOOT", (0.0, 0.0), wide)]
-    return {"wheel": Sheet(tuple(ratchet.wheel(teeth(values)))), "click": Sheet(tuple(click))}
+    return sheets_of(wheel=ratchet.wheel(teeth(values)), click=click)
 
 
 def conflicts(values: WindingClick) -> Iterator[Conflict]:
