@@ -11,9 +11,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from watchsim.bench.compare import compare, table, whole
+from watchsim.bench.compare import compare, scenarios, swing, table, whole
 from watchsim.bench.engines import Circle, convex_pieces, is_installed
-from watchsim.bench.scenarios import scenarios, swing
 from watchsim.cli import main
 from watchsim.commands import bench
 from watchsim.commands.console import FINE

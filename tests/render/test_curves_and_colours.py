@@ -301,10 +301,10 @@ def test_nothing_is_clipped(profile: str, caplog: pytest.LogCaptureFixture) -> N
     run = ws.simulate(scene, duration=DURATION.get(profile, min(1.0, scene.duration)), record="all")
     drawn = set()
     for width in (170.0, 85.0):
-        asked = Request(run, None, ("angle", "velocity", "acceleration"), None, width)
-        for kind, draw in KINDS.items():
+        request = Request(run, None, ("angle", "velocity", "acceleration"), None, width)
+        for kind in KINDS:
             try:
-                figure = draw(asked)
+                figure = request.figure(kind)
             except ValueError:
                 continue
             assert width_mm(figure) == pytest.approx(width)

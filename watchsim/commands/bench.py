@@ -27,7 +27,7 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from watchsim.bench.compare import missing_engines
+    from watchsim.bench.compare import missing_engines, table
     from watchsim.commands.inputs import secured_file, secured_folder
 
     folder = Path(args.output)
@@ -43,8 +43,6 @@ def run(args: argparse.Namespace) -> int:
     if args.json:
         print_json(rows)
     else:
-        from watchsim.bench.compare import table
-
         print(table(rows, references))
     say(f"Results: {args.output}")
     return FINE
@@ -56,8 +54,7 @@ def measured(
     """Rows and references as plain mappings; ValueError for a scene that is not compared."""
     from dataclasses import asdict
 
-    from watchsim.bench.compare import REPEATS, compare
-    from watchsim.bench.scenarios import scenarios
+    from watchsim.bench.compare import REPEATS, compare, scenarios
 
     chosen = scenarios()
     if unknown := set(names or ()) - {one.name for one in chosen}:

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from watchsim.commands.console import BAD_INPUT, FINE, MISSED, InputError, check_picture, parse_width, print_json, say
 
 if TYPE_CHECKING:
     from watchsim.escapement.measure import Function
-    from watchsim.mechanism.check import ModelledPairs
     from watchsim.mechanism.compile import Compiled
     from watchsim.scene.scene import Scene
 
@@ -78,14 +76,18 @@ def run(args: argparse.Namespace) -> int:
     report["statics"] = statics(function)
     report["findings"] += [judgement.as_dict() for judgement in judgements(scene, function)]
     wrong = any(finding["severity"] == "error" for finding in report["findings"])
-    turned = None
+    turned, passes = None, True
     if args.turn and not wrong:
         from watchsim.commands.pictures import turned_by_hand
+        from watchsim.escapement.turn import PASSES
 
-        turned = turned_by_hand(scene, args.swing, args.movie, args.png, args.dark)
-        report["turn"] = turned.report
+        report["turn"], turned = turned_by_hand(scene, args.swing, args.movie, args.png, args.dark)
+        passes = report["turn"]["verdict"] == PASSES
     elif args.png:
-        _still(scene, compiled, pairs, report, args.png, args.dark)
+        from watchsim.render.stage import still
+
+        places = [(1e-3 * f["x_mm"], 1e-3 * f["y_mm"]) for f in report["findings"] if f["code"] == "overlap"]
+        still(scene, args.png, compiled, pairs, places, args.dark)
     if args.png:
         if function.pallets is not None:
             sheets.append(Path(args.png).with_name(f"{Path(args.png).stem}_function.png"))
@@ -97,10 +99,10 @@ def run(args: argparse.Namespace) -> int:
     else:
         print(check_text(report, scene, text(function)))
         if turned is not None:
-            print(turned.text)
+            print(turned)
     if wrong:
         return BAD_INPUT
-    return MISSED if turned is not None and not turned.passes else FINE
+    return FINE if passes else MISSED
 
 
 def _check_options(args: argparse.Namespace) -> None:
@@ -108,13 +110,6 @@ def _check_options(args: argparse.Namespace) -> None:
         raise InputError("--dark: nothing is drawn; give --png, --sheet or --movie.")
     if not args.turn and (args.swing or args.movie):
         raise InputError(f"{'--swing' if args.swing else '--movie'}: needs --turn.")
-
-
-def _still(scene: Scene, compiled: Compiled, pairs: ModelledPairs, report: Mapping[str, Any], path: str, dark: bool) -> None:
-    from watchsim.render.still import still
-
-    places = [(1e-3 * f["x_mm"], 1e-3 * f["y_mm"]) for f in report["findings"] if f["code"] == "overlap"]
-    still(scene, path, compiled, pairs, places, dark)
 
 
 def _sheet(scene: Scene, compiled: Compiled, function: Function, path: Path, width: float, on_dark: bool) -> None:

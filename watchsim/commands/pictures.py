@@ -1,4 +1,4 @@
-"""What does `watchsim check SCENE --turn` do? Lead the mechanism through its cycle, report what happens, draw it."""
+"""Which plots and movies are there of a run, which come with it, and what is drawn of a mechanism turned by hand?"""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
+import watchsim
 from watchsim import stopping
 from watchsim.commands.beside import drawn_beside
 from watchsim.commands.console import InputError, Progress, parse_positive, say
@@ -21,9 +22,7 @@ if TYPE_CHECKING:
     from watchsim.simulation.trajectory import Trajectory
 
 
-# Which plots are there of a run, and what draws each?
-
-ALL = "all"
+ALL = "all"  # kinds of plots
 
 
 @dataclass(frozen=True)
@@ -37,85 +36,31 @@ class Request:
     width: float
 
     @cached_property
-    def beats(self) -> list[Beat]:
-        """The beats that the plots of a beat share."""
+    def beats(self) -> list[Beat] | None:
+        """The beats that the plots of a beat share; None where there are none, and each plot says why."""
         from watchsim.analysis.timeline import shown_beats
 
-        return shown_beats(self.run, self.window, rubbed=False)
-
-    @property
-    def beats_if_any(self) -> list[Beat]:
-        """The same; none where there are none."""
         try:
-            return self.beats
+            return shown_beats(self.run, self.window, rubbed=False)
         except ValueError:
-            return []
+            return None
+
+    def figure(self, kind: str) -> Figure:
+        """The plot of that kind."""
+        plot: Callable[..., Figure] = getattr(watchsim, f"plot_{kind.replace('-', '_')}")
+        return plot(self.run, **{name: getattr(self, name) for name in KINDS[kind]})
 
 
-def _kinematics(asked: Request) -> Figure:
-    from watchsim.render.kinematics_plot import plot_kinematics
-
-    return plot_kinematics(asked.run, asked.bodies, asked.quantities, asked.window, asked.width)
-
-
-def _phases(asked: Request) -> Figure:
-    from watchsim.render.phase_bands import plot_phases
-
-    return plot_phases(asked.run, asked.window, asked.width, asked.beats)
-
-
-def _portrait(asked: Request) -> Figure:
-    from watchsim.render.phase_portrait import plot_phase_portrait
-
-    return plot_phase_portrait(asked.run, asked.bodies, asked.window, asked.width)
-
-
-def _torque(asked: Request) -> Figure:
-    from watchsim.render.torque_plot import plot_torque
-
-    return plot_torque(asked.run, asked.window, asked.width, asked.beats)
-
-
-def _forces(asked: Request) -> Figure:
-    from watchsim.render.force_plot import plot_forces
-
-    return plot_forces(asked.run, asked.window, asked.width)
-
-
-def _timeline(asked: Request) -> Figure:
-    from watchsim.render.timeline_plot import plot_timeline
-
-    return plot_timeline(asked.run, asked.window, asked.width, asked.beats)
-
-
-def _energy(asked: Request) -> Figure:
-    from watchsim.render.energy_plot import plot_energy
-
-    return plot_energy(asked.run, asked.window, asked.width, asked.beats_if_any)
-
-
-def _timing(asked: Request) -> Figure:
-    from watchsim.render.timing_plot import plot_timing
-
-    return plot_timing(asked.run, asked.window, asked.width)
-
-
-def _tape(asked: Request) -> Figure:
-    from watchsim.render.timing_plot import plot_tape
-
-    return plot_tape(asked.run, asked.window, asked.width)
-
-
-KINDS: dict[str, Callable[[Request], Figure]] = {
-    "kinematics": _kinematics,
-    "phases": _phases,
-    "timeline": _timeline,
-    "phase-portrait": _portrait,
-    "torque": _torque,
-    "forces": _forces,
-    "energy": _energy,
-    "timing": _timing,
-    "tape": _tape,
+KINDS = {  # kind -> what `watchsim.plot_KIND` takes besides the run
+    "kinematics": ("bodies", "quantities", "window", "width"),
+    "phases": ("window", "width", "beats"),
+    "timeline": ("window", "width", "beats"),
+    "phase-portrait": ("bodies", "window", "width"),
+    "torque": ("window", "width", "beats"),
+    "forces": ("window", "width"),
+    "energy": ("window", "width", "beats"),
+    "timing": ("window", "width"),
+    "tape": ("window", "width"),
 }
 
 
@@ -126,8 +71,6 @@ def chosen(names: Sequence[str]) -> list[str]:
         raise InputError(f"--kind {','.join(names)}: choose from {', '.join(KINDS)}, or {ALL}.")
     return list(KINDS) if ALL in names else list(dict.fromkeys(names))
 
-
-# Which plots and movies come with a run, and what if one of them cannot be drawn?
 
 Draw = Callable[[Path | IO[bytes]], object]
 Draws = Mapping[str, Draw]  # by the name of the picture in the results folder
@@ -153,7 +96,11 @@ def pictures(
 
     Where there is a `folder`, plots may be drawn from now on by another process, and wait there in files without names.
     """
-    found: dict[str, Any] = dict(_plots_of(run, folder, panels)) if plotted else {}
+    draws = plots(run, panels) if plotted else {}
+    moving = sum(body.motion != "fixed" for body in run.scene.bodies)
+    if draws and moving > MOST_PLOTTED:
+        say(f"Plots of {MOST_PLOTTED} of {moving} moving bodies; watchsim plot RUN --bodies NAMES draws others.")
+    found: dict[str, Any] = dict(drawn_beside(draws, folder) if folder else draws)
     if movie:
         found["movie.mp4"] = lambda path: _movie(run, path, slow=1 / 20)
     if gif:
@@ -187,15 +134,6 @@ def _drawn(draw: Callable[[Path], object]) -> Callable[[Path], None]:
             say(f"{path.name} could not be drawn: {error}")
 
     return attempt
-
-
-def _plots_of(run: Trajectory, folder: Path | None, panels: Kinematics | None) -> Draws:
-    """What draws the plots, or waits for them where they are being drawn."""
-    draws = plots(run, panels)
-    moving = sum(body.motion != "fixed" for body in run.scene.bodies)
-    if draws and moving > MOST_PLOTTED:
-        say(f"Plots of {MOST_PLOTTED} of {moving} moving bodies; watchsim plot RUN --bodies NAMES draws others.")
-    return drawn_beside(draws, folder) if folder else draws
 
 
 def empty_panels(scene: Scene) -> Kinematics:
@@ -287,48 +225,36 @@ def _movie(run: Trajectory, path: Path, slow: float) -> None:
         progress.close()
 
 
-# What does `watchsim check SCENE --turn` do? Lead the mechanism through its cycle, report what happens, draw it.
+def turned_by_hand(
+    scene: Scene, swing: str | None, movie: str | None, picture: str | None, on_dark: bool
+) -> tuple[dict[str, Any], str]:
+    """Turn the scene, write a movie and a picture where requested; what came out, for `--json` and for people.
 
-
-@dataclass(frozen=True)
-class Turned:
-    """What came out, for machines and for people."""
-
-    report: dict[str, Any]
-    text: str
-    passes: bool
-
-
-def turned_by_hand(scene: Scene, swing: str | None, movie: str | None, picture: str | None, on_dark: bool) -> Turned:
-    """Turn the scene; write a movie and a picture where asked. SceneError where the scene is none that can be turned."""
+    SceneError where the scene is none that can be turned.
+    """
     from watchsim.commands.inputs import secured_file
-    from watchsim.escapement.turn import PASSES, turn, turn_report, turn_text
+    from watchsim.escapement.turn import swinging, turn, turn_report, turn_text
+    from watchsim.units import ANGLE, LENGTH
 
     target = None
     if movie:
         from watchsim.render.encoder import check_path
 
         target = secured_file(check_path(movie), "the movie")
-    found = turn(scene, None if swing is None else _swing(scene, swing))
+    way = None  # rad or m to either side
+    if swing is not None:
+        found = swinging(scene)
+        if found is None:
+            raise InputError(f'--swing "{swing}": nothing swings in this scene; its wheel is led by one pitch.')
+        way = parse_positive("--swing", swing, ANGLE if scene.body(found.body).motion == "pivot" else LENGTH)
+    turned = turn(scene, way)
     if picture:
         from watchsim.render.turn_picture import turn_picture
 
-        turn_picture(found, Path(picture), on_dark)
+        turn_picture(turned, Path(picture), on_dark)
     if target is not None:
         from watchsim.render.movie import turn_movie
 
-        turn_movie(found, target, on_dark)
+        turn_movie(turned, target, on_dark)
         say(f"Movie: {target}")
-    report = turn_report(found)
-    return Turned(report, turn_text(found), report["verdict"] == PASSES)
-
-
-def _swing(scene: Scene, text: str) -> float:
-    """How far the oscillator is led to either side, rad or m."""
-    from watchsim.escapement.turn import swinging
-    from watchsim.units import ANGLE, LENGTH
-
-    found = swinging(scene)
-    if found is None:
-        raise InputError(f'--swing "{text}": nothing swings in this scene; its wheel is led by one pitch.')
-    return parse_positive("--swing", text, ANGLE if scene.body(found.body).motion == "pivot" else LENGTH)
+    return turn_report(turned), turn_text(turned)

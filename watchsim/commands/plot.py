@@ -53,7 +53,7 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     from watchsim.commands.inputs import read_run, secured_file, swept_run
-    from watchsim.commands.pictures import KINDS, Request
+    from watchsim.commands.pictures import Request
     from watchsim.render.palette import dark
     from watchsim.render.style import save
     from watchsim.storage.write import write_file
@@ -68,13 +68,13 @@ def run(args: argparse.Namespace) -> int:
     trajectory = read_run(args.run_folder)
     paths = {kind: [secured_file(path, "the plot") for path in own] for kind, own in _places(args, kinds, formats).items()}
     bodies = _bodies(trajectory, args.bodies) if "kinematics" in kinds else parse_names(args.bodies)
-    asked = Request(trajectory, bodies, tuple(parse_names(args.quantities) or ()), window, width)
+    request = Request(trajectory, bodies, tuple(parse_names(args.quantities) or ()), window, width)
     if args.phases:
         _print_timeline(trajectory, window)
     drawn = 0
     for kind in kinds:
         try:
-            figure = dark(KINDS[kind](asked)) if args.dark else KINDS[kind](asked)
+            figure = dark(request.figure(kind)) if args.dark else request.figure(kind)
         except ValueError as error:
             if len(kinds) == 1:
                 raise InputError(f"--phases: {error}." if args.phases else f"--kind {kind}: {error}.") from error

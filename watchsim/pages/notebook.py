@@ -18,8 +18,7 @@ from watchsim.pages.html import Markup, card, element, image, table
 from watchsim.pages.player import shown
 from watchsim.pages.report_page import player_text
 from watchsim.pages.timing_sheet import AVERAGED, both_ways, with_error
-from watchsim.render.stage import Stage
-from watchsim.render.still import at_rest
+from watchsim.render.stage import Stage, at_rest
 from watchsim.render.study_plot import axis_label, output_label, plot_sensitivity, plot_sweep, usual_value
 from watchsim.render.style import minus, small_png
 from watchsim.render.view import Window, poses

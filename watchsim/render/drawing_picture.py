@@ -28,12 +28,11 @@ from watchsim.drawing.findings import ORDER, Finding
 from watchsim.drawing.material import layer_roles
 from watchsim.geometry.loops import Box, extents, polyline
 from watchsim.geometry.primitives import Arc, Point
-from watchsim.render.palette import BACKGROUND, FAINT, GRID, INK
+from watchsim.render.palette import BACKGROUND, FAINT, FAULT, GRID, INK
 from watchsim.render.parts import compound
 from watchsim.storage.write import write_file
 
 # Lengths of the marks are in points on the paper.
-FAULT = "#d0021b"
 CIRCLED = 80  # more circles would cover the part
 RADIUS = 6.5  # of a circle
 CLOSE = 6.0  # faults this close share a circle

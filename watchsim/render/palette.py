@@ -26,6 +26,7 @@ FAINT = "#5b6168"
 GRID = "#ddd8ce"
 CONTACT = "#e8590c"
 FORCE = "#0b5fa5"
+FAULT = "#d0021b"
 PHASES = {  # of a beat; pale, to lie behind curves, and distinct for every kind of colour vision
     "unlock": "#a6cee4",
     "catch-up": "#f5d999",

@@ -6,9 +6,11 @@ changing numbers are copied in. Frames do not depend on one another.
 
 from __future__ import annotations
 
+import os
 from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,14 +20,20 @@ from matplotlib.figure import Figure
 from matplotlib.transforms import IdentityTransform
 
 from watchsim.analysis.phases import Phase
+from watchsim.geometry.primitives import Point
+from watchsim.mechanism.check import ModelledPairs
+from watchsim.mechanism.compile import Compiled
 from watchsim.render.insets import InsetPicture, Strip, beside, insets
 from watchsim.render.marks import Clock, arrow_path, changing_speed_text, turn_text
-from watchsim.render.palette import LIGHT, Style
+from watchsim.render.palette import DARK, FAULT, LIGHT, Style
 from watchsim.render.parts import Edges, LastingPatch, loops_of
 from watchsim.render.patches import Mechanism
-from watchsim.render.view import Frame, Pixels, View, Window, seen, view
+from watchsim.render.view import Frame, Pixels, View, Window, poses, seen, view
 from watchsim.render.words import Words, draw_key, draw_notes, draw_rules, draw_scale, lay_out, relative_size
+from watchsim.scene.scene import Scene
+from watchsim.simulation.state import EVENT_DTYPE, Stop
 from watchsim.simulation.trajectory import Array, Trajectory
+from watchsim.storage.write import write_file
 from watchsim.units import metric
 
 
@@ -263,3 +271,44 @@ class Stage:
             self._beside.tell_speed(speed, self._layout.frame, pixels)
         self._layout.write(t, frames, pixels)
         return pixels
+
+
+STILL_SIZE = (1280, 720)
+REACHABLE, CANDIDATE = "#1971c2", "#f76707"
+REACHABLE_DARK = "#74c0fc"
+
+
+def still(
+    scene: Scene,
+    path: str | os.PathLike[str],
+    compiled: Compiled,
+    pairs: ModelledPairs,
+    overlaps: Sequence[Point] = (),
+    dark: bool = False,
+) -> None:
+    """Write a picture (PNG or what else imageio knows) of the bodies where the scene puts them at t = 0.
+
+    Edges that can ever touch another body are in colour, those of which a pair is a candidate at the start in another; rings
+    mark the places (m) where bodies overlap. `dark`: on dark ground.
+    """
+    import imageio.v3 as imageio
+
+    model = compiled.model
+    picked: tuple[Edges, ...] = (
+        Edges(model, np.setdiff1d(pairs.reachable, pairs.candidates), REACHABLE_DARK if dark else REACHABLE, "can ever touch"),
+        Edges(model, pairs.candidates, CANDIDATE, "candidate at the start"),
+    )
+    if overlaps:
+        picked = (*picked, Edges(model, np.zeros(0, np.int64), FAULT, "bodies overlap"))
+    run = at_rest(scene, compiled)
+    stage = Stage(run, STILL_SIZE, (0.0, 1.0), picked=picked, style=DARK if dark else LIGHT)
+    frames = {name: rows[0] for name, rows in poses(run, np.zeros(1)).items()}
+    pixels = stage.draw(0.0, frames, np.array(overlaps).reshape(-1, 2), FAULT)[..., :3]
+    write_file(Path(path), lambda scratch: imageio.imwrite(scratch, pixels), "the picture")
+
+
+def at_rest(scene: Scene, compiled: Compiled) -> Trajectory:
+    """A run in which nothing moves."""
+    q = compiled.relative(np.stack([compiled.q, compiled.q]))
+    rest, no_events = np.zeros_like(q), np.zeros(0, EVENT_DTYPE)
+    return Trajectory(scene, np.array([0.0, 1.0]), q, rest, rest, compiled.slices, no_events, (), Stop.DURATION)
