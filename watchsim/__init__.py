@@ -45,10 +45,10 @@ _HOMES = {
     "plot_tape": "watchsim.render.timing_plot",
     "plot_timing": "watchsim.render.timing_plot",
     "plot_energy": "watchsim.render.energy_plot",
-    "plot_phases": "watchsim.render.phase_bands",
-    "plot_timeline": "watchsim.render.timeline_plot",
-    "plot_phase_portrait": "watchsim.render.phase_portrait",
-    "plot_torque": "watchsim.render.torque_plot",
+    "plot_phases": "watchsim.render.phase_plots",
+    "plot_timeline": "watchsim.render.phase_plots",
+    "plot_phase_portrait": "watchsim.render.kinematics_plot",
+    "plot_torque": "watchsim.render.energy_plot",
     "plot_forces": "watchsim.render.force_plot",
     "plot_front": "watchsim.render.study_plot",
     "plot_sensitivity": "watchsim.render.study_plot",
@@ -82,20 +82,20 @@ if TYPE_CHECKING:
     from watchsim.pages.report_page import report as report
     from watchsim.paths import profiles_dir as profiles_dir
     from watchsim.render.energy_plot import plot_energy as plot_energy
+    from watchsim.render.energy_plot import plot_torque as plot_torque
     from watchsim.render.force_plot import plot_forces as plot_forces
     from watchsim.render.kinematics_plot import plot_kinematics as plot_kinematics
+    from watchsim.render.kinematics_plot import plot_phase_portrait as plot_phase_portrait
     from watchsim.render.movie import frame as frame
     from watchsim.render.movie import movie as movie
-    from watchsim.render.phase_bands import plot_phases as plot_phases
-    from watchsim.render.phase_portrait import plot_phase_portrait as plot_phase_portrait
+    from watchsim.render.phase_plots import plot_phases as plot_phases
+    from watchsim.render.phase_plots import plot_timeline as plot_timeline
     from watchsim.render.study_plot import plot_front as plot_front
     from watchsim.render.study_plot import plot_sensitivity as plot_sensitivity
     from watchsim.render.study_plot import plot_sweep as plot_sweep
-    from watchsim.render.timeline_plot import plot_timeline as plot_timeline
     from watchsim.render.timing_plot import plot_tape as plot_tape
     from watchsim.render.timing_plot import plot_timing as plot_timing
     from watchsim.render.tolerance_plot import plot_tolerance as plot_tolerance
-    from watchsim.render.torque_plot import plot_torque as plot_torque
     from watchsim.results.folder import read_results as read_results
     from watchsim.results.folder import write_results as write_results
     from watchsim.scene.errors import SceneError as SceneError

@@ -1,4 +1,4 @@
-"""What is said of an option that a command does not have?"""
+"""What can be typed, and what is said of an option that a command does not have? Parse, call, print."""
 
 from __future__ import annotations
 
@@ -12,8 +12,6 @@ from typing import Any
 
 from watchsim import __version__, stopping
 from watchsim.commands.console import BAD_INPUT, FAULT, INTERRUPTED, InputError, say
-
-# What is said of an option that a command does not have?
 
 
 class CommandParser(argparse.ArgumentParser):
@@ -59,8 +57,6 @@ def meant(word: str, known: Iterable[str]) -> str:
     return f" Did you mean {plain[near[0]]}?" if near else ""
 
 
-# What can be typed? Parse, call, print.
-#
 # Exit status: 0 fine; 1 ran, but an expectation was missed or the watch does not work; 2 bad input, or nowhere to write; 3 the
 # solver gave up; 4 a fault of the program itself; 130, 143 stopped by Ctrl-C, SIGTERM.
 

@@ -191,6 +191,12 @@ def metric(value: float, unit: str, digits: int = 6) -> str:
     return f"{shown:.12g} {_METRIC[power]}{unit}"
 
 
+def signed(value: float, decimals: int) -> str:
+    """Fixed decimals, a true minus sign, and no negative zero."""
+    text = f"{value:.{decimals}f}"
+    return f"−{text[1:]}" if text.startswith("-") and float(text) != 0.0 else text.lstrip("-")
+
+
 @lru_cache(maxsize=512)
 def _unit(text: str) -> Unit:
     """Parses products, quotients, powers and brackets of unit names; KeyError where that fails."""

@@ -38,7 +38,7 @@ AREAS = {  # name -> (files, tests)
         (
             "render/movie.py",
             "render/view.py",
-            "render/phase_bands.py",
+            "render/phase_plots.py",
             "render/marks.py",
             "render/encoder.py",
             "render/keyframes.py",

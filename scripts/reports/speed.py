@@ -21,11 +21,10 @@ import time
 from pathlib import Path
 from typing import Any
 
-from watchsim.bench.compare import whole
+from watchsim.bench.compare import Scenario, scenarios, whole
 from watchsim.bench.engines import is_installed
 from watchsim.bench.growth import Study, studies
 from watchsim.bench.profile import profile_of, profile_text
-from watchsim.bench.scenarios import Scenario, scenarios
 from watchsim.commands.bench import measured, write
 from watchsim.paths import profiles_dir
 from watchsim.render.study_plot import plot_speed

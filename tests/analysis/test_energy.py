@@ -14,8 +14,7 @@ from analysis.made_beats import Events, balance_only, lever_scene
 from numpy.polynomial import Polynomial
 from scipy.integrate import quad
 
-from watchsim.analysis.energy import efficiency, work_of_gravity
-from watchsim.analysis.flows import Flows, flows
+from watchsim.analysis.flows import Flows, efficiency, flows, work_of_gravity
 from watchsim.mechanism.compile import compile_scene
 from watchsim.model import (
     BODY,

@@ -10,7 +10,7 @@ import pytest
 from analysis.made_beats import lever_scene
 
 from watchsim.analysis.expectations import USUAL, expectation_faults, impossible, not_begun
-from watchsim.analysis.summary import KNOWN, judge, judged, mistake, mistakes, not_judged, summary, unit_of
+from watchsim.analysis.summary import KNOWN, judged, mistakes, not_judged, summary, unit_of
 from watchsim.cli import main
 from watchsim.commands.console import BAD_INPUT
 from watchsim.paths import profiles_dir
@@ -36,6 +36,14 @@ NUMBERS = {
     "bodies": {"disc": {"x_m": 10.0939616, "angle_rad": -200.18, "angle_rad_per_s": -134.2, "x_m_per_s": 6.71}},
     "energy": {"dissipated": {"friction": 8e-6}, "in_J": 3e-5, "residual_relative": 4e-11},
 }
+
+
+def judge(expectation, numbers):
+    return judged([expectation], numbers)[0]
+
+
+def mistake(expectation, numbers):
+    return mistakes([expectation], numbers)[0]
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from analysis.made_beats import lever_run
 from render.fake_runs import disc_run, slide_run
 
 import watchsim as ws
-from watchsim.analysis.energy import energy_shares
+from watchsim.analysis.flows import energy_shares
 from watchsim.analysis.headlines import doubts, expected_text, with_scatter
 from watchsim.analysis.summary import NUMBERS, summary, summary_text, tables, with_error_bars
 from watchsim.mechanism.compile import scene_size

@@ -22,7 +22,7 @@ from watchsim.cli import main
 from watchsim.commands.console import BAD_INPUT, FINE
 from watchsim.mechanism.compile import compile_scene
 from watchsim.paths import profiles_dir
-from watchsim.render.phase_bands import plot_phases
+from watchsim.render.phase_plots import plot_phases
 from watchsim.scene.forces import Damping, Spring, Torque
 from watchsim.scene.load import load
 from watchsim.simulation.simulate import simulate

@@ -43,7 +43,7 @@ def test_a_run_in_files_is_the_run_in_memory(monkeypatch: pytest.MonkeyPatch, tm
     folders = {name: tmp_path / name / "run" for name in ("memory", "files")}
     for name, folder in folders.items():
         if name == "files":
-            monkeypatch.setattr("watchsim.storage.columns.MOST", 1e4)
+            monkeypatch.setattr("watchsim.storage.columns.IN_MEMORY", 1e4)
         folder.parent.mkdir()
         assert main(["run", SCENE, "--duration", "1 s", "--record", "all", "--no-plots", "-o", str(folder)]) == FINE
         assert main(["run", SCENE, "--duration", "1.5 s", "--resume", str(folder)]) == FINE

@@ -200,7 +200,7 @@ def test_rows_that_are_kept_tell_the_motion(lever: Trajectory) -> None:
 
 
 def test_too_much_motion_is_refused_or_cut(monkeypatch: pytest.MonkeyPatch, lever: Trajectory) -> None:
-    monkeypatch.setattr("watchsim.pages.player.MOST", 4_000)
+    monkeypatch.setattr("watchsim.pages.player.MOST_MOTION", 4_000)
     with pytest.raises(TooMuch, match="choose a shorter window"):
         page_text(lever, window=(0.0, 0.6))
     start, end = data_of(page_text(lever))["window"]

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from records.wording import said, shortened, without_unsure
 
-from watchsim.analysis.energy import energy_shares
+from watchsim.analysis.flows import energy_shares
 from watchsim.analysis.forces import forces
 from watchsim.analysis.headlines import beats_csv, phases_csv
 from watchsim.analysis.phases import phases

@@ -20,20 +20,20 @@ from render.fake_runs import disc_run, slide_run, watch_run
 from render.read_back import area_of, faults, named, svg_curve, width_mm
 
 import watchsim as ws
-from watchsim.analysis.energy import energy_shares
+from watchsim.analysis.flows import energy_shares
 from watchsim.analysis.headlines import phases_csv
 from watchsim.analysis.timeline import shown_beats, title
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Line
 from watchsim.render import force_plot
-from watchsim.render import timeline_plot as key_instants
+from watchsim.render import phase_plots as key_instants
+from watchsim.render.energy_plot import pushes, torque_on
 from watchsim.render.force_plot import Curves, left_out
 from watchsim.render.kinematics_plot import Kinematics, plot_kinematics, write_png
 from watchsim.render.marks import clock
 from watchsim.render.palette import looks
 from watchsim.render.parts import parts
 from watchsim.render.style import passing
-from watchsim.render.torque_plot import pushes, torque_on
 from watchsim.scene.scene import Body, Scene
 
 
@@ -152,7 +152,7 @@ def test_forces_are_those_of_the_contacts(run: ws.Trajectory) -> None:
 
 
 def test_a_window_with_too_many_instants_is_refused(run: ws.Trajectory, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("watchsim.render.force_plot.MOST", 300)
+    monkeypatch.setattr("watchsim.render.force_plot.MOST_INSTANTS", 300)
     with pytest.raises(ValueError, match="choose a shorter window"):
         ws.plot_forces(run, window=(0.1, 0.9))
 

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from watchsim.results import tables as module
-from watchsim.results.tables import EVENT_COLUMNS, EventLines, json_text, plain, write_events
+from watchsim.results.tables import HEAD, EventLines, json_text, plain, write_events
 from watchsim.scene.scene import Body, Scene
 from watchsim.simulation.recording import Pair
 from watchsim.simulation.state import EVENT_DTYPE, EventKind
@@ -44,7 +44,7 @@ def made(count: int, seed: int = 3) -> Any:
 def slowly(events: Any) -> str:
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\r\n")
-    writer.writerow(EVENT_COLUMNS)
+    writer.writerow(HEAD.decode().rstrip().split(","))
     names = [body.name for body in SCENE.bodies]
     for event in events:
         contact, body = int(event["contact"]), int(event["body"])

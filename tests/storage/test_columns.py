@@ -119,7 +119,7 @@ def archive_of(path: Path, seed: int = 3) -> dict[str, np.ndarray]:
 def test_a_long_array_of_an_archive_is_mapped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     arrays = archive_of(tmp_path / "run.npz")
     for most, mapped in ((0.0, True), (1e9, False)):
-        monkeypatch.setattr("watchsim.storage.columns.MOST", most)
+        monkeypatch.setattr("watchsim.storage.columns.IN_MEMORY", most)
         with np.load(tmp_path / "run.npz") as archive:
             back = {name: unpacked(archive, name, tmp_path) for name in arrays}
         assert same(list(back.values()), list(arrays.values()))
@@ -142,7 +142,7 @@ def test_an_archive_is_read_where_nothing_can_be_written(
             raise OSError(errno.ENOSPC, "No space left on device")
         return make()
 
-    monkeypatch.setattr("watchsim.storage.columns.MOST", 0.0)
+    monkeypatch.setattr("watchsim.storage.columns.IN_MEMORY", 0.0)
     monkeypatch.setattr(tempfile, "TemporaryFile", refuse)
     with np.load(tmp_path / "run.npz") as archive:
         back = [unpacked(archive, name, tmp_path) for name in arrays]
@@ -151,7 +151,7 @@ def test_an_archive_is_read_where_nothing_can_be_written(
 
 def test_a_damaged_archive_is_refused_as_numpy_does(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Every hundredth byte changed in turn: never anything but the right numbers or an exception."""
-    monkeypatch.setattr("watchsim.storage.columns.MOST", 0.0)
+    monkeypatch.setattr("watchsim.storage.columns.IN_MEMORY", 0.0)
     arrays = archive_of(tmp_path / "run.npz")
     sound = (tmp_path / "run.npz").read_bytes()
     refused = 0

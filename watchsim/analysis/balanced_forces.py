@@ -16,8 +16,7 @@ from watchsim.contact.gaps import OPEN, STICK, closed_contacts, poses
 from watchsim.dynamics.forces import Seen, balance, room
 from watchsim.mechanism.compile import Compiled
 from watchsim.simulation.state import EventKind
-from watchsim.simulation.trajectory import Array as Array_of_trajectory
-from watchsim.simulation.trajectory import Trajectory
+from watchsim.simulation.trajectory import Array, Trajectory
 from watchsim.storage.columns import blocks
 
 # Events say how modes change. At the first of the times a contact's mode follows from the last event of its own; from there
@@ -28,7 +27,7 @@ MODES = (EventKind.CLOSE, EventKind.OPEN, EventKind.STICK, EventKind.SLIDE, Even
 InForce = tuple[tuple[int, int], ...]  # contacts with their modes, by number of the contact
 
 
-def modes_in_force(run: Trajectory, times: Array_of_trajectory) -> dict[InForce, list[int]]:
+def modes_in_force(run: Trajectory, times: Array) -> dict[InForce, list[int]]:
     """What is in force -> at which of the times it is: their places among `times`, the earliest first."""
     order = np.argsort(times, kind="stable")
     sorted_times, places = times[order], order.tolist()
@@ -38,29 +37,20 @@ def modes_in_force(run: Trajectory, times: Array_of_trajectory) -> dict[InForce,
     for (part,) in blocks(run.events):
         if asked == len(places):
             break
-        told = np.compress(np.isin(part["kind"], MODES), part)  # a third of the time of indexing
-        t = np.ascontiguousarray(told["t"])
+        changes = np.compress(np.isin(part["kind"], MODES), part)  # a third of the time of indexing
+        t = np.ascontiguousarray(changes["t"])
         done = int(np.searchsorted(t, sorted_times[0], side="right"))
-        modes = _Changes(told[:done], modes).modes()
-        here = sorted_times[asked : _before(sorted_times, part["t"][-1])]
+        modes = _Changes(changes[:done], modes).modes()
+        here = sorted_times[asked : int(np.searchsorted(sorted_times, part["t"][-1]))]
         for stop, times_there in zip(*np.unique(np.searchsorted(t, here, side="right"), return_counts=True), strict=True):
-            _follow(modes, told[done:stop])
-            found.setdefault(_in_order(modes), []).extend(places[asked : asked + times_there])
+            _follow(modes, changes[done:stop])
+            found.setdefault(tuple(sorted(modes.items())), []).extend(places[asked : asked + times_there])
             done, asked = stop, asked + times_there
         if asked < len(places):
-            _follow(modes, told[done:])
+            _follow(modes, changes[done:])
     if asked < len(places):
-        found.setdefault(_in_order(modes), []).extend(places[asked:])
+        found.setdefault(tuple(sorted(modes.items())), []).extend(places[asked:])
     return found
-
-
-def _in_order(modes: dict[int, int]) -> InForce:
-    return tuple(sorted(modes.items()))
-
-
-def _before(times: Array_of_trajectory, end: float) -> int:
-    """How many of the times, in order, come before `end`."""
-    return int(np.searchsorted(times, end, side="left"))
 
 
 class _Changes:
@@ -118,8 +108,6 @@ def change(modes: dict[int, int], kind: int, contact: int, value: float) -> None
     else:
         modes[contact] = int(value)
 
-
-Array = NDArray[np.float64]
 
 SLACK = 1e-9  # of the largest force: rounding
 GENTLE = 1e-4  # of a system scaled to 1: how much small forces are preferred

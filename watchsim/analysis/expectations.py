@@ -6,11 +6,10 @@ Worth asking before a long run: the names are those of the summary of a run that
 from __future__ import annotations
 
 import dataclasses
-from typing import Any
 
 import numpy as np
 
-from watchsim.analysis.summary import WATCH_KEYS, mistakes
+from watchsim.analysis.summary import WATCH_KEYS, mistakes, summary
 from watchsim.mechanism.compile import compile_scene
 from watchsim.scene.errors import Fault, Faults
 from watchsim.scene.roles import keeps_time, partners, roles
@@ -45,20 +44,16 @@ def expectation_faults(scene: Scene) -> list[Fault]:
         return []
     wrong = mistakes(scene.expect, USUAL)
     if any(wrong):
-        wrong = mistakes(scene.expect, _summary_at_rest(scene))
+        # All names that a summary of this scene has: takes a tenth of a second, mostly to load what works out the numbers.
+        wrong = mistakes(
+            scene.expect, summary(dataclasses.replace(not_begun(scene), scene=dataclasses.replace(scene, expect=())))
+        )
     lines = key_lines(scene.path.read_text(encoding="utf-8-sig")) if scene.path and scene.path.is_file() else {}
     faults = Faults(str(scene.path or "scene"), lines)
     for expectation, mistake in zip(scene.expect, wrong, strict=True):
         if message := mistake or impossible(expectation, scene):
             faults.add(f"expect.{expectation.key}", message)
     return faults.found
-
-
-def _summary_at_rest(scene: Scene) -> dict[str, Any]:
-    """All names that a summary of this scene has: takes a tenth of a second, mostly to load what works out the numbers."""
-    from watchsim.analysis.summary import summary
-
-    return summary(dataclasses.replace(not_begun(scene), scene=dataclasses.replace(scene, expect=())))
 
 
 def impossible(expectation: Expectation, scene: Scene) -> str:
@@ -88,16 +83,9 @@ def not_begun(scene: Scene) -> Trajectory:
     compiled = compile_scene(scene)
     q = compiled.relative(compiled.q[None])
     rest = np.zeros_like(q)
+    no_events = np.zeros(0, EVENT_DTYPE)
     return Trajectory(
-        scene=scene,
-        t=np.zeros(1),
-        q=q,
-        u=rest,
-        a=rest,
-        slices=compiled.slices,
-        events=np.zeros(0, EVENT_DTYPE),
-        pairs=(),
-        stop=Stop.DURATION,
+        *(scene, np.zeros(1), q, rest, rest, compiled.slices, no_events, (), Stop.DURATION),
         energy={"dissipated": dict.fromkeys(CAUSES, 0.0)},
         counts=dict.fromkeys(COUNTS, 0),
         overlap={**dict.fromkeys(LOOKED, 0.0), "between": None},

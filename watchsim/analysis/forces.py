@@ -14,15 +14,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.analysis.balanced_forces import Array, Balanced, Mechanism, modes_in_force
+from watchsim.analysis.balanced_forces import Balanced, Mechanism, modes_in_force
 from watchsim.mechanism.backlash import rack_ways
 from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.scene.roles import loads
 from watchsim.scene.scene import STATISTICS, Gear, Scene
 from watchsim.scene.trains import Ride, rides, ungeared
 from watchsim.simulation import EVENT_DRIVEN
-from watchsim.simulation.trajectory import Array as Array_of_trajectory
-from watchsim.simulation.trajectory import Trajectory
+from watchsim.simulation.trajectory import Array, Trajectory
 
 # What a body's own equation of motion leaves over, with every body freed of its gears, is the torque of its teeth; of gears
 # with play it is that of their racks. The force acts at the pitch point, where both bodies run alike, along the line of
@@ -227,14 +226,20 @@ class Forces:
     drives      name of a driven body -> torque, N·m, or force along its axis, N, that keeps its motion up (n,)
     """
 
-    t: Array_of_trajectory
+    t: Array
     pairs: NDArray[np.int64]
-    normal: Array_of_trajectory
-    tangential: Array_of_trajectory
-    direction: Array_of_trajectory
-    point: Array_of_trajectory
-    pivots: dict[str, Array_of_trajectory]
-    drives: dict[str, Array_of_trajectory]
+    normal: Array
+    tangential: Array
+    direction: Array
+    point: Array
+    pivots: dict[str, Array]
+    drives: dict[str, Array]
+
+    @property
+    def on_a(self) -> Array:
+        """What each contact does to its body A, N (n, k, 2); nan where it is open."""
+        across = np.stack((-self.direction[..., 1], self.direction[..., 0]), axis=-1)
+        return np.asarray(self.normal[..., None] * self.direction + self.tangential[..., None] * across)
 
     def __repr__(self) -> str:
         most = f"up to {self.normal.max():.3g} N at {len(self.pairs)} contacts" if self.normal.size else "no contact in force"
@@ -277,7 +282,12 @@ def forces(run: Trajectory, times: Iterable[float] | float | None = None) -> For
     return out
 
 
-def absolute(compiled: Compiled, values: Array_of_trajectory, rates: bool) -> Array_of_trajectory:
+def just_before(edges: Array, share: float) -> Array:
+    """Times that a `share` of every stretch between `edges` (s) separates from its end: what is in force in it still is."""
+    return np.asarray(edges[1:] - np.maximum(share * np.diff(edges), np.spacing(edges[1:])))
+
+
+def absolute(compiled: Compiled, values: Array, rates: bool) -> Array:
     """Coordinates in the movement from those that the trajectory gives: the inverse of `Compiled.relative`."""
     out = np.array(values)
     out = out[:, : len(compiled.q)]  # what is geared to others follows from them
@@ -286,7 +296,7 @@ def absolute(compiled: Compiled, values: Array_of_trajectory, rates: bool) -> Ar
     return out
 
 
-def _pressed(found: Balanced) -> Array_of_trajectory:
+def _pressed(found: Balanced) -> Array:
     """Force on body A of each contact, N (n, m, 2)."""
     across = np.stack((-found.normal[:, :, 1], found.normal[:, :, 0]), axis=2)
     return np.asarray(found.force[:, :, :1] * found.normal + found.force[:, :, 1:] * across)
@@ -294,7 +304,7 @@ def _pressed(found: Balanced) -> Array_of_trajectory:
 
 def _pivots(
     run: Trajectory, compiled: Compiled, motion: Motion, loads_found: Loads, meshed: list[Pressed]
-) -> Iterator[tuple[str, Array_of_trajectory]]:
+) -> Iterator[tuple[str, Array]]:
     """What the bearings in the movement take: change of momentum less weight less contacts, of a body with all it carries."""
     hung, weighed, _ = loads(run.scene.bodies)
     # The bodies of the model on both sides of each contact.
@@ -315,9 +325,7 @@ def _pivots(
         yield body.name, change - load.mass * np.array(run.scene.gravity) - pressed
 
 
-def _drives(
-    run: Trajectory, compiled: Compiled, load: Array_of_trajectory, a: Array_of_trajectory
-) -> Iterator[tuple[str, Array_of_trajectory]]:
+def _drives(run: Trajectory, compiled: Compiled, load: Array, a: Array) -> Iterator[tuple[str, Array]]:
     """Against the contacts, and for the acceleration of as much mass or inertia as the scene gives the body."""
     for body, mass in zip(run.scene.bodies, loads(run.scene.bodies)[2], strict=True):
         if body.prescribed is not None:

@@ -10,16 +10,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.analysis.energy import Shares, energy_shares
+from watchsim.analysis.flows import energy_shares
 from watchsim.analysis.phases import stretches, with_angles
-from watchsim.analysis.timeline import Stages, Staging, can_be_told
+from watchsim.analysis.timeline import Stages, Staging, knows_energies
 from watchsim.analysis.timing import Beats
 from watchsim.analysis.verdict_kinds import BESIDE
 from watchsim.mechanism.compile import scene_size
 from watchsim.scene.roles import keeps_time
 from watchsim.simulation import MOREAU
 from watchsim.simulation.trajectory import Trajectory
-from watchsim.units import metric
+from watchsim.units import metric, signed
 
 UNSOLVED = 1e-6  # share of a contact problem's largest term: what rounding leaves lies far below
 COARSE = 5e-3  # overlap as a share of the mechanism's size, beyond which a step has lost the shapes that touch
@@ -79,7 +79,7 @@ def phases_csv(run: Trajectory, found: Beats) -> Iterator[str]:
     Energies and impulse are empty for a run by fixed steps, whose contacts have no smooth forces.
     """
     yield _row(PHASE_COLUMNS)
-    staging, known = Staging(run), can_be_told(run)
+    staging, known = Staging(run), knows_energies(run)
     for part in stretches(run, found):
         some = with_angles(run, part)
         yield _lines(_phase_columns(staging.of(some), known)) if len(some) else ""
@@ -102,10 +102,7 @@ def _phase_columns(part: Stages, known: bool) -> list[list[str]]:
 
 def _cells(column: NDArray[np.float64]) -> list[str]:
     """The numbers, such that they read back as the same; nothing for what is not finite."""
-    told = list(map(repr, column.tolist()))
-    for k in np.flatnonzero(~np.isfinite(column)).tolist():
-        told[k] = ""
-    return told
+    return [repr(value) if math.isfinite(value) else "" for value in column.tolist()]
 
 
 def _row(fields: Sequence[str]) -> str:
@@ -119,11 +116,7 @@ def _lines(columns: Sequence[Sequence[str]]) -> str:
 
 LABEL = 13
 EXACT = 6  # decimals at most
-AVERAGED = (
-    ("amplitude_deg", "amplitude", "°"),
-    ("rate_s_per_d", "rate", " s/d"),
-    ("beat_error_ms", "beat error", " ms"),
-)
+AVERAGED = (("amplitude_deg", "amplitude", "°"), ("rate_s_per_d", "rate", " s/d"), ("beat_error_ms", "beat error", " ms"))
 HELPED = (
     ("lcp_copositive", "by the second way (copositive form)"),
     ("lcp_detours", "from another start"),
@@ -144,15 +137,9 @@ PLAIN = 1e-6  # errors below are written with an exponent
 
 def headlines(run: Trajectory, numbers: Mapping[str, Any]) -> str:
     """The headline numbers in watchmakers' units, a line each; `numbers` as from `watchsim.analysis.summary.summary(run)`."""
-    parts = [
-        *_verdict(numbers),
-        *_timing(numbers),
-        *_places(run, numbers),
-        *_contacts(numbers),
-        *_energy(run),
-        *_solver(run, numbers),
-    ]
-    lines = [f"  {label:{LABEL}}{text}" for label, text in (*parts, *_verdicts(numbers))]
+    timing = (*_verdict(numbers), *_timing(numbers), *_places(run, numbers))
+    parts = (*timing, *_contacts(numbers), *_energy(run), *_solver(run, numbers), *_verdicts(numbers))
+    lines = [f"  {label:{LABEL}}{text}" for label, text in parts]
     return "\n".join([run.scene.title, *lines])
 
 
@@ -161,7 +148,7 @@ def with_scatter(value: float, error: float | None, unit: str) -> str:
     if error is not None and max(abs(value), error) < 10.0**-EXACT:
         return f"below {10.0**-EXACT:.{EXACT}f}{unit}" if error > 0.0 or value else f"0{unit}"
     decimals = 3 if error is None else _decimals(error)
-    text = _signed(value, decimals) + unit
+    text = signed(value, decimals) + unit
     if error is None:
         return text
     return f"{text}, scatter {max(error, 10.0**-EXACT):.{decimals}f}{unit}"
@@ -172,11 +159,6 @@ def _decimals(error: float) -> int:
     if error <= 0.0:
         return EXACT
     return min(max(0, math.ceil(-math.log10(error))), EXACT)
-
-
-def _signed(value: float, decimals: int) -> str:
-    text = f"{value:.{decimals}f}"
-    return f"−{text[1:]}" if text.startswith("-") and float(text) != 0.0 else text.lstrip("-")
 
 
 def _verdict(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
@@ -202,14 +184,10 @@ def _timing(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     if (missed := numbers["missed_beats"]) is not None:
         where = f"in {numbers['beats']} half swings"
         yield "missed beats", f"{missed} {where}: half pitches the wheel fell short or ran ahead" if missed else f"none {where}"
-    if numbers["efficiency"] is not None:
-        yield "efficiency", _reached(100.0 * numbers["efficiency"])
-
-
-def _reached(percent: float) -> str:
-    if percent < 0.0:
-        return f"none of the drive's work reached the oscillator, which gave away {-percent:.1f} % as much"
-    return f"{percent:.1f} % of the drive's work reached the oscillator"
+    if (share := numbers["efficiency"]) is not None and share < 0.0:
+        yield "efficiency", f"none of the drive's work reached the oscillator, which gave away {-100.0 * share:.1f} % as much"
+    elif share is not None:
+        yield "efficiency", f"{100.0 * share:.1f} % of the drive's work reached the oscillator"
 
 
 def _heard(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
@@ -217,12 +195,8 @@ def _heard(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     heard = numbers["timegrapher"]
     if heard is None:
         return
-    shown = [
-        None if heard["amplitude_deg"] is None else f"{heard['amplitude_deg']:.0f}°",
-        None if heard["rate_s_per_d"] is None else f"{heard['rate_s_per_d']:+.1f} s/d".replace("-", "−"),
-        None if heard["beat_error_ms"] is None else f"{heard['beat_error_ms']:.2f} ms",
-    ]
-    listed = ", ".join(one for one in shown if one is not None)
+    forms = {"amplitude_deg": "{:.0f}°", "rate_s_per_d": "{:+.1f} s/d", "beat_error_ms": "{:.2f} ms"}
+    listed = ", ".join(form.format(heard[name]) for name, form in forms.items() if heard[name] is not None).replace("-", "−")
     if listed:
         lift = heard["lift_angle_deg"]
         yield "timegrapher", f"would show {listed}" + ("" if lift is None else f" with a lift angle of {lift:.4g}°")
@@ -238,10 +212,10 @@ def _places(run: Trajectory, numbers: Mapping[str, Any]) -> Iterator[tuple[str, 
             continue
         if body.motion == "pivot":
             if not keeps_time(run.scene):
-                yield body.name, f"at {_signed(math.degrees(state['angle_rad']), 3)}° at the end"
+                yield body.name, f"at {signed(math.degrees(state['angle_rad']), 3)}° at the end"
             continue
-        angle = f", {_signed(math.degrees(state['angle_rad']), 3)}°" if body.motion == "free" else ""
-        yield body.name, f"at ({_signed(1e3 * state['x_m'], 4)}, {_signed(1e3 * state['y_m'], 4)}) mm{angle} at the end"
+        angle = f", {signed(math.degrees(state['angle_rad']), 3)}°" if body.motion == "free" else ""
+        yield body.name, f"at ({signed(1e3 * state['x_m'], 4)}, {signed(1e3 * state['y_m'], 4)}) mm{angle} at the end"
 
 
 def _contacts(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
@@ -260,7 +234,7 @@ def _looked(overlap: Mapping[str, Any]) -> str:
     if overlap["between"] is None:
         return f"{looks} found no overlap of {metric(overlap['resolution_m'], 'm', 2)} or more"
     first, second = overlap["between"]
-    place = f"at ({_signed(overlap['x_mm'], 4)}, {_signed(overlap['y_mm'], 4)}) mm"
+    place = f"at ({signed(overlap['x_mm'], 4)}, {signed(overlap['y_mm'], 4)}) mm"
     return f"{looks}: {first} and {second} by {metric(overlap['worst_m'], 'm', 2)} at {overlap['t_s']:.6g} s, {place}"
 
 
@@ -270,15 +244,12 @@ def _energy(run: Trajectory) -> Iterator[tuple[str, str]]:
         return
     power = f", {metric(shares.supplied / run.simulated, 'W', 4)}" if run.simulated > 0.0 else ""
     listed = ", ".join(f"{cause} {100.0 * share:.1f} %" for cause, share in shares.went_to.items() if abs(share) >= 5e-4)
-    yield "energy", f"{metric(shares.supplied, 'J', 4)} {_source(shares)}{power}: {listed}"
-    yield "", f"the account closes to {run.energy.get('residual_relative', 0.0):.1g} of it"
-
-
-def _source(shares: Shares) -> str:
-    """Where the energy came from: a drive, or what springs, weights and moving bodies held."""
+    # From a drive, or from what springs, weights and moving bodies held.
+    source = "put in or taken from what was stored" if shares.ran_down > 0.0 else "put in"
     if shares.ran_down >= shares.supplied:
-        return "taken from what was stored at the start"
-    return "put in or taken from what was stored" if shares.ran_down > 0.0 else "put in"
+        source = "taken from what was stored at the start"
+    yield "energy", f"{metric(shares.supplied, 'J', 4)} {source}{power}: {listed}"
+    yield "", f"the account closes to {run.energy.get('residual_relative', 0.0):.1g} of it"
 
 
 def _error(value: float, unit: str) -> str:
@@ -291,7 +262,8 @@ def _error(value: float, unit: str) -> str:
 def _solver(run: Trajectory, numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     factor = numbers["realtime_factor"]
     compiling = f" (and {run.compile:.1f} s to compile or load the solver)" if run.compile > 1.0 else ""
-    yield "speed", f"{_times(factor)} × real time, {run.wall:.2g} s{compiling}" if factor else "not measured"
+    times = (f"{factor:.3g}" if factor < 999.5 else f"{float(f'{factor:.3g}'):,.0f}") if factor else ""
+    yield "speed", f"{times} × real time, {run.wall:.2g} s{compiling}" if factor else "not measured"
     if run.method == MOREAU and run.step is not None:
         yield "method", f"Moreau's time stepping, steps of {metric(run.step, 's', 4)}"
     yield "solver", _solved(run, numbers)
@@ -300,11 +272,6 @@ def _solver(run: Trajectory, numbers: Mapping[str, Any]) -> Iterator[tuple[str, 
             yield "", words.format(count)
     yield from _compared(numbers)
     yield "end", run.stop_message or run.stop.sentence
-
-
-def _times(factor: float) -> str:
-    """Three digits, without an exponent."""
-    return f"{factor:.3g}" if factor < 999.5 else f"{float(f'{factor:.3g}'):,.0f}"
 
 
 def _solved(run: Trajectory, numbers: Mapping[str, Any]) -> str:

@@ -19,8 +19,7 @@ from watchsim.analysis.timegrapher import noises
 from watchsim.analysis.timing import beats
 from watchsim.scene.roles import keeps_time, pitch, roles, swings
 from watchsim.scene.scene import STATISTICS
-from watchsim.simulation.trajectory import Array as Array_of_trajectory
-from watchsim.simulation.trajectory import Trajectory
+from watchsim.simulation.trajectory import Array, Trajectory
 from watchsim.storage.write import write_file
 
 # A case rings on a few tones that die away. Which ones is no result of the simulation: these are typical of a small watch on
@@ -29,8 +28,6 @@ from watchsim.storage.write import write_file
 #
 # A tone that dies away is one complex number per blow, turned and shrunk from sample to sample: y[n] = z y[n-1] + x[n]. Tails
 # are therefore exact however long, and a sound can be made block by block.
-
-Array = NDArray[np.float64]
 
 SAMPLES = 48000  # per second
 TONES = ((3400.0, 0.9e-3, 0.45), (6100.0, 0.6e-3, 0.35), (11300.0, 0.3e-3, 0.2))  # Hz, decay time s, share of the start
@@ -84,15 +81,16 @@ class Loop:
 class Score:
     """`times` (s since the sound begins) and `energies` (J) of a run's blows, known until `known`; then `loop`."""
 
-    times: Array_of_trajectory
-    energies: Array_of_trajectory
+    times: Array
+    energies: Array
     known: float
     loop: Loop | None
 
-    def between(self, start: float, end: float) -> tuple[Array_of_trajectory, Array_of_trajectory]:
+    def between(self, start: float, end: float) -> tuple[Array, Array]:
         """Times and energies of the blows from `start` up to `end`, s."""
-        found = [self._part(start, min(end, self._turn), 0.0)]
-        if self.loop is not None and end > self._turn:
+        turn = self.known if self.loop is None else self.loop.end
+        found = [self._part(start, min(end, turn), 0.0)]
+        if self.loop is not None and end > turn:
             length = self.loop.end - self.loop.start
             first = max(0, math.floor((start - self.loop.end) / length))
             last = math.floor((end - self.loop.end) / length)
@@ -103,11 +101,7 @@ class Score:
         times, energies = zip(*found, strict=True)
         return np.concatenate(times), np.concatenate(energies)
 
-    @property
-    def _turn(self) -> float:
-        return self.known if self.loop is None else self.loop.end
-
-    def _part(self, start: float, end: float, shift: float) -> tuple[Array_of_trajectory, Array_of_trajectory]:
+    def _part(self, start: float, end: float, shift: float) -> tuple[Array, Array]:
         first, last = np.searchsorted(self.times, (start, end), side="left")
         return self.times[first:last] + shift, self.energies[first:last]
 
@@ -184,7 +178,7 @@ def check_length(length: float) -> None:
         raise ValueError(f"a sound lasts up to {LONGEST / 3600.0:.0f} hours, not {length:.6g} s")
 
 
-def told(heard: Score) -> str | None:
+def repeated(heard: Score) -> str | None:
     """What is repeated, in words; None where nothing is."""
     if heard.loop is None:
         return None

@@ -12,11 +12,8 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
-from watchsim.analysis.energy import efficiency
 from watchsim.analysis.escape_wheel import missed_beats, standstill, why_no_timing
+from watchsim.analysis.flows import efficiency
 from watchsim.analysis.headlines import beats_csv, doubts, headlines, phases_csv
 from watchsim.analysis.timegrapher import timegrapher
 from watchsim.analysis.timing import Averages, Beats, averages, beats, last_window, whole_run
@@ -56,7 +53,7 @@ def more_exact(run: Trajectory, progress: Progress | None = None, stream: Path |
 def with_error_bars(numbers: Mapping[str, Any], other: Mapping[str, Any]) -> dict[str, Any]:
     """The summary `numbers` with the differences to `other`, the summary of the more exact run, as errors.
 
-    Each `..._error` becomes at least the difference (where beats are too few to tell their scatter, it stays None: how exactly
+    Each `..._error` becomes at least the difference (where beats are too few to show their scatter, it stays None: how exactly
     they were computed, `differences` says), every end state gets an error beside it, and `error_bars` says what was
     compared; its `complete` is False where the more exact run did not come to its end, and no error is given then.
     """
@@ -101,9 +98,10 @@ KNOWN = f"Known names: {', '.join(WATCH_KEYS)} and the names in summary.json."
 MOST_ADVISED = 20  # wrong keys for which a similar one is looked for: each takes a hundredth of a second
 
 
-def judge(expectation: Expectation, numbers: Mapping[str, Any]) -> dict[str, Any]:
-    """{key, expected, tolerance, got, ok, unit, message}, in the unit of the promise; `message` says why `got` is None."""
-    return _judged(expectation, dict(_numbers(numbers)))
+def judged(expectations: Sequence[Expectation], numbers: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """{key, expected, tolerance, got, ok, unit, message} of each, in the unit of the promise; `message`: why `got` is None."""
+    known = dict(_numbers(numbers))
+    return [_judged(expectation, known) for expectation in expectations]
 
 
 def _judged(expectation: Expectation, known: Mapping[str, float | None]) -> dict[str, Any]:
@@ -126,7 +124,7 @@ def _judged(expectation: Expectation, known: Mapping[str, float | None]) -> dict
 
 
 def not_judged(entry: Mapping[str, Any], changed: Sequence[str]) -> dict[str, Any]:
-    """An entry of `judge` without a verdict (`ok` is null): options made the run another than the scene's own."""
+    """An entry of `judged` without a verdict (`ok` is null): options made the run another than the scene's own."""
     return {**entry, "ok": None, "message": f"not checked: changed by {' and '.join(changed)}"}
 
 
@@ -138,13 +136,8 @@ def unit_of(name: str) -> str:
     return next((unit for ending, unit in ENDINGS.items() if last.endswith(ending)), "")
 
 
-def mistake(expectation: Expectation, numbers: Mapping[str, Any]) -> str:
-    """What is wrong with the key or the unit, whatever the run; "" for nothing. What is null may hold numbers later."""
-    return _mistake(expectation, dict(_numbers(numbers)))
-
-
 def mistakes(expectations: Sequence[Expectation], numbers: Mapping[str, Any]) -> list[str]:
-    """`mistake` of each."""
+    """Of each what is wrong with the key or the unit, whatever the run; "" for nothing. What is null may hold numbers later."""
     known = dict(_numbers(numbers))
     found: list[str] = []
     wrong = 0
@@ -152,12 +145,6 @@ def mistakes(expectations: Sequence[Expectation], numbers: Mapping[str, Any]) ->
         found.append(_mistake(expectation, known, advised=wrong < MOST_ADVISED))
         wrong += bool(found[-1])
     return found
-
-
-def judged(expectations: Sequence[Expectation], numbers: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """`judge` of each."""
-    known = dict(_numbers(numbers))
-    return [_judged(expectation, known) for expectation in expectations]
 
 
 def _mistake(expectation: Expectation, known: Mapping[str, float | None], advised: bool = True) -> str:
@@ -280,12 +267,12 @@ def _bodies(run: Trajectory) -> dict[str, dict[str, float]]:
         return {}
     q, u = run.end
     places, rates = frames(run.scene, run.slices, q[None]), speeds(run.scene, run.slices, q[None], u[None])
-    return {body.name: _state(places[body.name][0], rates[body.name][0]) for body in run.scene.bodies}
-
-
-def _state(place: NDArray[np.float64], rate: NDArray[np.float64]) -> dict[str, float]:
-    (x, y, angle), (v_x, v_y, spin) = place.tolist(), rate.tolist()
-    return {"angle_rad": angle, "x_m": x, "y_m": y, "angle_rad_per_s": spin, "x_m_per_s": v_x, "y_m_per_s": v_y}
+    found = {}
+    for body in run.scene.bodies:
+        (x, y, angle), (v_x, v_y, spin) = places[body.name][0].tolist(), rates[body.name][0].tolist()
+        pose, motion = {"angle_rad": angle, "x_m": x, "y_m": y}, {"angle_rad_per_s": spin, "x_m_per_s": v_x, "y_m_per_s": v_y}
+        found[body.name] = pose | motion
+    return found
 
 
 def _counts(run: Trajectory) -> dict[str, Any]:
@@ -308,16 +295,9 @@ def _counts(run: Trajectory) -> dict[str, Any]:
 def _timing(run: Trajectory) -> dict[str, Any]:
     """Amplitude, period, rate, beat error and what follows from them; null where nothing oscillates."""
     if not swings(run.scene):
-        nothing = {
-            "beats": 0,
-            "whole_run": None,
-            "timegrapher": None,
-            "missed_beats": None,
-            "stopped": False,
-            "stopped_message": None,
-            **_judgement(NOTHING),
-        }
-        values = _timing_of(None) | nothing
+        unknown = dict.fromkeys(("whole_run", "timegrapher", "missed_beats"))
+        nothing = {"beats": 0, **unknown, "stopped": False, "stopped_message": None}
+        values = {**_timing_of(None), **nothing, **_judgement(NOTHING)}
         return {**values, "timing_message": why_no_timing(run, None, values)}
     found = beats(run)
     window = last_window(run, found.nominal_period)

@@ -31,11 +31,11 @@ class StonesUnlocked:
     def __init__(self, run: Trajectory, compiled: Compiled, parts: Roles) -> None:
         self._run, self._compiled, self._parts = run, compiled, parts
         self._times, self._contacts = _rests(run, compiled, parts)
-        self._are_told = parts.lever != parts.oscillator or _has_pallets(run, compiled, parts)
+        self._known = parts.lever != parts.oscillator or _has_pallets(run, compiled, parts)
 
     def at(self, starts: Array) -> list[str]:
-        """For beats that begin at these times (s): "entry", "exit", or "" where that cannot be told."""
-        if not self._are_told:
+        """For beats that begin at these times (s): "entry", "exit", or "" where that is not known."""
+        if not self._known:
             return [""] * len(starts)
         last = np.searchsorted(self._times, starts, side="right") - 1
         known = last >= 0
@@ -114,7 +114,7 @@ class Energies:
 class Stage:
     """A phase with everything reported of it; triples are of wheel, lever and oscillator, rad and rad/s.
 
-    `pallet`: entry or exit, the stone that is unlocked in this beat; "" where that cannot be told. `impulse`: angular impulse
+    `pallet`: entry or exit, the stone that is unlocked in this beat; "" where that is not known. `impulse`: angular impulse
     of all contacts on the oscillator, N·m·s. Rates at the start are before impacts at that time, but after the lock's at the
     end of a drop and at the start of what follows.
     """
@@ -194,24 +194,24 @@ class Staging:
 
     def of(self, some: Phases) -> Stages:
         """The stages of some beats in a row, at least one."""
-        run, told = self._run, some.rows
-        first = int(np.searchsorted(run.t, told.start[0], side="left"))
-        last = int(np.searchsorted(run.t, told.end[-1], side="right")) + 1
+        run, rows = self._run, some.rows
+        first = int(np.searchsorted(run.t, rows.start[0], side="left"))
+        last = int(np.searchsorted(run.t, rows.end[-1], side="right")) + 1
         made = flows(run, self._compiled, slice(first, last))
-        begins = told.first
-        rested = np.array(self._stones.at(told.start[begins]), object)
-        pallets = np.repeat(rested, np.diff(np.append(begins, len(told)))).tolist()
+        begins = rows.first
+        rested = np.array(self._stones.at(rows.start[begins]), object)
+        pallets = np.repeat(rested, np.diff(np.append(begins, len(rows)))).tolist()
         columns = _columns(run, self._parts, self._compiled, made, some, pallets)
         let_go(run.t, run.q, run.u, run.a, run.events)
         return columns
 
 
-def _columns(run: Trajectory, parts: Roles, compiled: Compiled, made: Flows, told: Phases, pallets: list[str]) -> Stages:
+def _columns(run: Trajectory, parts: Roles, compiled: Compiled, made: Flows, some: Phases, pallets: list[str]) -> Stages:
     """Every number is a difference between two rows."""
-    starts, ends = told.rows.start, told.rows.end
+    starts, ends = some.rows.start, some.rows.end
     # The impacts of the lock belong to the drop that ends with them, all others to the phase that they begin. A lever that is
     # on its bank before the lock has no run to it: then the lock also is where the free oscillation begins.
-    locks = ends[told.rows.name == DROP]
+    locks = ends[some.rows.name == DROP]
     locked, locking = np.isin(starts, locks), np.isin(ends, locks)
     i, j = _rows(made.t, starts, locked), _rows(made.t, ends, locking)
     names = [name for name in (parts.wheel, parts.lever, parts.oscillator) if name]
@@ -230,7 +230,7 @@ def _columns(run: Trajectory, parts: Roles, compiled: Compiled, made: Flows, tol
     rates_i, rates_j = (compiled.relative(made.u[k], rates=True)[:, columns] for k in (i, j))
     supplied, stored, damped = change(made.drive), change(made.stored), damping.sum(axis=1)
     return Stages(
-        phases=told,
+        phases=some,
         pallets=pallets,
         start_rates=rates_i,
         end_angles=compiled.relative(made.q[j])[:, columns],
@@ -256,7 +256,7 @@ def _rows(t: Array, times: Array, after: NDArray[np.bool_]) -> NDArray[np.int64]
     return np.clip(k, 0, len(t) - 1)
 
 
-def can_be_told(run: Trajectory) -> bool:
+def knows_energies(run: Trajectory) -> bool:
     """Do rows and events of this run carry energies: by events, and with all of them kept?"""
     return run.method == EVENT_DRIVEN and run.keep != STATISTICS
 
@@ -308,7 +308,7 @@ def shown_beats(run: Trajectory, window: Sequence[float] | None = None, rubbed: 
         raise ValueError(f"phases are those of an escapement, and no driven wheel keeps {name} swinging")
     if parts.lever is None:
         raise ValueError(f"phases exist where there is a lever or an anchor; none stands between {parts.wheel} and {name}")
-    if not can_be_told(run):
+    if not knows_energies(run):
         raise ValueError("a timeline needs a run by events with all of them kept")
     found = beats(run)
     if window is None:
@@ -340,23 +340,23 @@ def title(stage: Stage) -> str:
     return f"{stage.name} on {stage.phase.on}" if stage.phase.on else stage.name
 
 
-def timeline_text(run: Trajectory, told: list[Beat] | None = None) -> str:
+def timeline_text(run: Trajectory, beats_shown: list[Beat] | None = None) -> str:
     """Both tables of some beats (see `shown_beats`), by default of the last oscillation; ValueError as there."""
-    told = told or shown_beats(run)
-    return "\n".join([*_motion(run, told), "", *_energy(told)])
+    beats_shown = beats_shown or shown_beats(run)
+    return "\n".join([*_motion(run, beats_shown), "", *_energy(beats_shown)])
 
 
-def _motion(run: Trajectory, told: list[Beat]) -> Iterator[str]:
+def _motion(run: Trajectory, beats_shown: list[Beat]) -> Iterator[str]:
     parts = with_anchor(run.scene)
     bodies = (parts.wheel, parts.lever, parts.oscillator)
     shown = [k for k, name in enumerate(bodies) if name not in bodies[:k]]  # an anchor is its own oscillator
     names = [str(bodies[k])[:13] for k in shown]
-    yield f"Timeline, t = {told[0].start:.6f} s to {told[-1].end:.6f} s"
-    start = told[0].first
+    yield f"Timeline, t = {beats_shown[0].start:.6f} s to {beats_shown[-1].end:.6f} s"
+    start = beats_shown[0].first
     yield f"angles in degrees and angular velocities in 1000 °/s, at the start of each phase; times in ms from the {start}"
     yield f"{'':{WIDTH}}{'start':>9}{'length':>9} " + "".join(f" {name:>19}" for name in names)
     yield f"{'':{WIDTH}}{'ms':>9}{'ms':>9} " + f" {'°':>10} {'1000°/s':>8}" * len(shown)
-    for beat in told:
+    for beat in beats_shown:
         yield _heading(beat)
         for stage in beat.stages:
             phase = stage.phase
@@ -377,31 +377,23 @@ def _heading(beat: Beat) -> str:
     return f"beat {beat.stages[0].beat}{of}, t = {beat.start:.6f} s"
 
 
-def _energy(told: list[Beat]) -> Iterator[str]:
-    rubbed = sorted({pair for beat in told for one in beat.friction for pair in one})
-    struck = sorted({pair for beat in told for stage in beat.stages for pair in stage.energy.impacts})
-    columns = [
-        "supplied",
-        "to balance",
-        "stored",
-        "damping",
-        *(f"f {pair}" for pair in rubbed),
-        *(f"i {pair}" for pair in struck),
-    ]
+def _energy(beats_shown: list[Beat]) -> Iterator[str]:
+    rubbed = sorted({pair for beat in beats_shown for one in beat.friction for pair in one})
+    struck = sorted({pair for beat in beats_shown for stage in beat.stages for pair in stage.energy.impacts})
+    columns = ["supplied", "to balance", "stored", "damping"]
+    columns += [*(f"f {pair}" for pair in rubbed), *(f"i {pair}" for pair in struck)]
     wide = [max(11, len(name) + 2) for name in columns]
     yield "energy in nJ; f: friction, i: impacts; to balance: work of all contacts on the oscillator; impulse on it in nN·m·s"
     yield f"{'':{WIDTH}}{'impulse':>9}" + "".join(f"{name:>{w}}" for name, w in zip(columns, wide, strict=True))
-    for beat in told:
+    for beat in beats_shown:
         yield _heading(beat)
         lines = [_values(stage, one, rubbed, struck) for stage, one in zip(beat.stages, beat.friction, strict=True)]
         sums = [sum(column) for column in zip(*lines, strict=True)]
-        for stage, values in zip(beat.stages, lines, strict=True):
+        names = (*map(title, beat.stages), "together")
+        impulses = [stage.impulse for stage in beat.stages]
+        for name, impulse, values in zip(names, (*impulses, sum(impulses)), (*lines, sums), strict=True):
             cells = "".join(f"{_nano(value):>{w}}" for value, w in zip(values, wide, strict=True))
-            yield f"  {title(stage):{WIDTH - 2}}{NANO * stage.impulse:9.3f}{cells}"
-        impulse = NANO * sum(stage.impulse for stage in beat.stages)
-        yield f"  {'together':{WIDTH - 2}}{impulse:9.3f}" + "".join(
-            f"{_nano(value):>{w}}" for value, w in zip(sums, wide, strict=True)
-        )
+            yield f"  {name:{WIDTH - 2}}{NANO * impulse:9.3f}{cells}"
         if sums[0] > 0.0:
             yield f"  {'of what is supplied':{WIDTH - 2}}{'':8}" + "".join(
                 f"{100.0 * value / sums[0]:>{w - 2}.2f} %" for value, w in zip(sums, wide, strict=True)

@@ -395,16 +395,16 @@ def missing_engines() -> list[str]:
     return [engine for engine in MODULES if not is_installed(engine)]
 
 
-def compare(scenario: Scenario, repeats: int, tell: Callable[[str], None]) -> tuple[Reference, list[Row]]:
+def compare(scenario: Scenario, repeats: int, say: Callable[[str], None]) -> tuple[Reference, list[Row]]:
     """The reference of a scenario, and a row for each setting of each installed engine."""
-    tell(f"{scenario.name}: reference")
+    say(f"{scenario.name}: reference")
     truth = reference(scenario)
     rows = []
     for method, settings in scenario.settings.items():
         if method in MODULES and not is_installed(method):
             continue
         for setting in settings:
-            tell(f"{scenario.name}: {method} {setting:g}")
+            say(f"{scenario.name}: {method} {setting:g}")
             rows.append(_row(scenario, method, setting, truth.truth, repeats))
     return truth, rows
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 import time
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -15,9 +16,8 @@ from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc
 from watchsim.mechanism.compile import compile_scene
 from watchsim.paths import profiles_dir
-from watchsim.scene.forces import Contact
 from watchsim.scene.load import load
-from watchsim.scene.scene import Body, Recording, Scene
+from watchsim.scene.scene import Recording, Scene
 from watchsim.simulation.runner import Run
 from watchsim.simulation.state import Stop
 
@@ -88,35 +88,31 @@ def _cpu_seconds(scene: Scene, duration: float) -> tuple[float, Stop]:
 
 def side_by_side(scene: Scene, count: int) -> Scene:
     """The scene `count` times over, in one; the copies do not touch each other and do not tick at one instant."""
-    numbers = range(count)
+    copies = [_moved(scene, k) for k in range(count)]
+    parts = ("bodies", "springs", "torques", "damping", "contacts")
+    together: dict[str, Any] = {name: tuple(one for copy in copies for one in getattr(copy, name)) for name in parts}
+    return replace(scene, **together, expect=())
+
+
+def _moved(scene: Scene, k: int) -> Scene:
+    """The k-th copy: with names, places, start and torques of its own."""
+
+    def named(one: Any, **changed: Any) -> Any:
+        return replace(one, body=f"{one.body} {k}", **changed)
+
+    bodies = []
+    for body in scene.bodies:
+        (x, y), swings = body.position, body.name == scene.springs[0].body
+        angle = body.angle + APART * k if swings else body.angle
+        bodies.append(replace(body, name=f"{body.name} {k}", position=(x + k * DISTANCE, y), angle=angle))
     return replace(
         scene,
-        bodies=tuple(_moved(body, k, scene.springs[0].body) for k in numbers for body in scene.bodies),
-        springs=tuple(replace(one, body=_named(one.body, k)) for k in numbers for one in scene.springs),
-        torques=tuple(
-            replace(one, body=_named(one.body, k), value=one.value * (1.0 + STRONGER * k))
-            for k in numbers
-            for one in scene.torques
-        ),
-        damping=tuple(replace(one, body=_named(one.body, k)) for k in numbers for one in scene.damping),
-        contacts=tuple(_between(one, k) for k in numbers for one in scene.contacts),
-        expect=(),
+        bodies=tuple(bodies),
+        springs=tuple(map(named, scene.springs)),
+        torques=tuple(named(one, value=one.value * (1.0 + STRONGER * k)) for one in scene.torques),
+        damping=tuple(map(named, scene.damping)),
+        contacts=tuple(replace(one, sides=tuple(map(named, one.sides))) for one in scene.contacts),
     )
-
-
-def _moved(body: Body, k: int, oscillator: str) -> Body:
-    x, y = body.position
-    angle = body.angle + APART * k if body.name == oscillator else body.angle
-    return replace(body, name=_named(body.name, k), position=(x + k * DISTANCE, y), angle=angle)
-
-
-def _between(contact: Contact, k: int) -> Contact:
-    first, second = contact.sides
-    return replace(contact, sides=(replace(first, body=_named(first.body, k)), replace(second, body=_named(second.body, k))))
-
-
-def _named(name: str, k: int) -> str:
-    return f"{name} {k}"
 
 
 def with_arcs(scene: Scene, count: int) -> Scene:

@@ -476,7 +476,7 @@ def _seconds(done: Integers, costs: Costs) -> float:
 
 
 # The floor is what would be left if nothing were done but the counted work: each count times the cost of one piece of it,
-# measured by itself in the middle of the run (kernel_costs.py). No work is counted twice. What is above the floor is the
+# measured by itself in the middle of the run (`kernel_costs`). No work is counted twice. What is above the floor is the
 # rest: what goes on in between, and what the same work takes more when it is not done many times in a row.
 
 WORDS = {

@@ -49,7 +49,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def measured(
-    quick: bool, names: list[str] | None, tell: Callable[[str], None]
+    quick: bool, names: list[str] | None, report: Callable[[str], None]
 ) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
     """Rows and references as plain mappings; ValueError for a scene that is not compared."""
     from dataclasses import asdict
@@ -64,7 +64,7 @@ def measured(
     for scenario in chosen:
         if names and scenario.name not in names:
             continue
-        reference, found = compare(scenario.quick() if quick else scenario, 1 if quick else REPEATS, tell)
+        reference, found = compare(scenario.quick() if quick else scenario, 1 if quick else REPEATS, report)
         references.append(asdict(reference))
         rows += [asdict(row) for row in found]
     return rows, references

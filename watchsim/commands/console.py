@@ -1,4 +1,4 @@
-"""Whose fault is an error, and what is needed to mend it?"""
+"""How does the tool talk to a terminal, what did somebody type, and whose fault is an error?"""
 
 from __future__ import annotations
 
@@ -16,7 +16,6 @@ import tempfile
 import time
 import traceback
 from pathlib import Path
-from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -27,8 +26,7 @@ if TYPE_CHECKING:
 #
 # `watchsim run ... | head` closes the pipe after ten lines; a terminal may be closed. That is no reason to stop, or to say
 # anything: what is printed from then on goes nowhere. Nor is a full disk a reason to give up a run whose results have a place
-# of
-# their own; but then output is missing, and the command says so in the end.
+# of their own; but then output is missing, and the command says so in the end.
 
 GONE = (errno.EPIPE, errno.EIO, errno.EBADF, errno.ESHUTDOWN)
 
@@ -104,14 +102,14 @@ class Progress:
     def __init__(self, words: str) -> None:
         self._words = words
         self._start = time.monotonic()
-        self._told = 0.0
+        self._shown = 0.0
         self._quiet = not sys.stderr.isatty()
 
     def __call__(self, done: float, whole: float) -> None:
         now = time.monotonic()
-        if self._quiet or now - self._told < 0.1:
+        if self._quiet or now - self._shown < 0.1:
             return
-        self._told = now
+        self._shown = now
         elapsed = now - self._start
         left = elapsed * (whole - done) / done if done > 0.0 and whole < math.inf else 0.0
         words = f"\r{self._words}  {done:.4g} of {whole:.4g}   {_clock(elapsed)} elapsed, {_clock(left)} left"
@@ -120,7 +118,7 @@ class Progress:
         self._show(f"{words:<79}")
 
     def close(self) -> None:
-        if not self._quiet and self._told:
+        if not self._quiet and self._shown:
             self._show("\r" + " " * 79 + "\r")
 
     def _show(self, words: str) -> None:
@@ -214,7 +212,7 @@ def parse_positive(option: str, text: str, dimension: Dimension) -> float:
 
 # Whose fault is an error, and what is needed to mend it?
 
-PACKAGE = Path(__file__).resolve().parents[2]
+PACKAGE = Path(__file__).resolve().parents[1]
 
 
 def is_refusal(error: Exception) -> bool:
@@ -222,14 +220,10 @@ def is_refusal(error: Exception) -> bool:
 
     One out of a library, or out of a function such as math.sqrt, comes from what this package should have checked.
     """
-    return isinstance(error, ValueError) and _is_raised_here(error.__traceback__)
-
-
-def _is_raised_here(trace: TracebackType | None) -> bool:
-    """True if the last thing that was done is a `raise` in this package."""
+    trace = error.__traceback__
     while trace is not None and trace.tb_next is not None:
         trace = trace.tb_next
-    if trace is None:
+    if trace is None or not isinstance(error, ValueError):
         return False
     code = trace.tb_frame.f_code
     raised = code.co_code[trace.tb_lasti] == dis.opmap["RAISE_VARARGS"]
@@ -239,7 +233,7 @@ def _is_raised_here(trace: TracebackType | None) -> bool:
 def report(error: Exception, argv: list[str]) -> str:
     """Write a file to send, and say where it is."""
     words = f"{type(error).__name__}: {error}".strip().splitlines()[0][:300]
-    told = f"This is a fault of watchsim, not of its input ({words})."
+    fault = f"This is a fault of watchsim, not of its input ({words})."
     text = report_text(error, argv)
     for folder in (Path.cwd, lambda: Path(tempfile.gettempdir())):
         try:
@@ -247,8 +241,8 @@ def report(error: Exception, argv: list[str]) -> str:
             path.write_text(text, encoding="utf-8", errors="replace")
         except OSError:
             continue
-        return f"{told}\nPlease send {path} to its authors; it holds the command, the versions and where it happened."
-    return f"{told}\n{text}"
+        return f"{fault}\nPlease send {path} to its authors; it holds the command, the versions and where it happened."
+    return f"{fault}\n{text}"
 
 
 def report_text(error: Exception, argv: list[str]) -> str:

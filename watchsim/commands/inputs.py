@@ -48,8 +48,8 @@ def read_run(folder: str) -> Trajectory:
     try:
         return read_results(folder)
     except (OSError, ValueError, KeyError) as error:
-        told = str(error)
-        raise InputError(told if told.startswith(folder) else f"{folder}: {told}") from error
+        words = str(error)
+        raise InputError(words if words.startswith(folder) else f"{folder}: {words}") from error
 
 
 # Where does a command write, and can it?
@@ -212,9 +212,9 @@ def kept_times(record: Recording, duration: float) -> tuple[float, float]:
 
 def room_for(scene: Scene, duration: float, folder: Path) -> float:
     """The bytes that the disk of `folder` should have; says so where they are many."""
-    from watchsim.storage.columns import MOST
+    from watchsim.storage.columns import IN_MEMORY
 
-    size, in_memory = record_size(scene, duration), 2.0 * MOST  # of rows and of events
+    size, in_memory = record_size(scene, duration), 2.0 * IN_MEMORY  # of rows and of events
     if size > WORTH_A_NOTE:
         say(
             f"Note: rows and events of this run take some {size_text(size)}. More than {size_text(in_memory)} are not held in "

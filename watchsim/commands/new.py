@@ -86,8 +86,8 @@ def _dimensions(design: Design, rest: list[str], asked: dict[str, Any]) -> dict[
     parser = argparse.ArgumentParser(prog=f"watchsim new {design.name}", description=f"{design.title}.", allow_abbrev=False)
     _common(parser)
     for one in design.dimensions:
-        told = f"{one.meaning} (default {one.shortly(one.default)})".replace("%", "%%")
-        parser.add_argument(one.option, metavar="VALUE", dest=f"dimension {one.name}", default=argparse.SUPPRESS, help=told)
+        words = f"{one.meaning} (default {one.shortly(one.default)})".replace("%", "%%")
+        parser.add_argument(one.option, metavar="VALUE", dest=f"dimension {one.name}", default=argparse.SUPPRESS, help=words)
     found, unknown = parser.parse_known_args(rest)
     if unknown:
         raise InputError(f"watchsim new {design.name}: {_unknown(design, unknown[0])}")

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 HELP = "plots of a results folder, for screen and print"
 FORMATS = ("png", "svg", "pdf")
-ALL, MOST = "all", 50  # bodies: each costs some hundredths of a second and two inches of paper
+ALL, FIRST = "all", 50  # bodies: each costs some hundredths of a second and two inches of paper
 
 
 def options(parser: argparse.ArgumentParser) -> None:
@@ -26,7 +26,9 @@ def options(parser: argparse.ArgumentParser) -> None:
         f"forces (at contacts and bearings), energy, timing, tape, with commas; {ALL}: every one that the run has",
     )
     parser.add_argument(
-        "--bodies", metavar="NAMES", help=f"only these bodies, with commas between them, or {ALL} (default: the first {MOST})"
+        "--bodies",
+        metavar="NAMES",
+        help=f"only these bodies, with commas between them, or {ALL} (default: the first {FIRST})",
     )
     parser.add_argument(
         "--quantities",
@@ -133,7 +135,7 @@ def _bodies(run: Trajectory, asked: str | None) -> list[str] | None:
     moving = list(run.slices)
     if asked == ALL and ALL not in moving:
         return None
-    if asked is not None or len(moving) <= MOST:
+    if asked is not None or len(moving) <= FIRST:
         return parse_names(asked)
-    say(f"{MOST} of {len(moving)} moving bodies are plotted; --bodies NAMES plots others, --bodies {ALL} all of them.")
-    return moving[:MOST]
+    say(f"{FIRST} of {len(moving)} moving bodies are plotted; --bodies NAMES plots others, --bodies {ALL} all of them.")
+    return moving[:FIRST]

@@ -21,7 +21,7 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from watchsim.analysis.sound import check_length, score, sound, told, wav_path
+    from watchsim.analysis.sound import check_length, repeated, score, sound, wav_path
     from watchsim.commands.inputs import read_run, secured_file, swept_run
     from watchsim.units import TIME
 
@@ -35,7 +35,7 @@ def run(args: argparse.Namespace) -> int:
     swept_run(args.run_folder)
     trajectory = read_run(args.run_folder)
     secured_file(target, "the sound")
-    if words := told(score(trajectory, duration)):
+    if words := repeated(score(trajectory, duration)):
         say(f"Note: {words}.")
     progress = Progress("sound, s:")
     try:

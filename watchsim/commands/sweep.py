@@ -85,7 +85,7 @@ def _sweep(args: argparse.Namespace, scene: Scene, outputs: tuple[Output, ...], 
     from watchsim.commands.write import write_study
     from watchsim.studies.axes import axes_from_texts
     from watchsim.studies.point import Question
-    from watchsim.studies.study_report import sweep_table
+    from watchsim.studies.study_report import sweep_table, sweep_text
     from watchsim.studies.sweep import measured, swept
     from watchsim.units import TIME
 
@@ -112,8 +112,6 @@ def _sweep(args: argparse.Namespace, scene: Scene, outputs: tuple[Output, ...], 
 
         print_json(plain(done.numbers()))
     else:
-        from watchsim.studies.study_report import sweep_text
-
         print(sweep_text(done))
         print(f"Results: {folder}")
     without = sum(row[outputs[0].column] is None for row in done.rows)
@@ -125,7 +123,7 @@ def _sweep(args: argparse.Namespace, scene: Scene, outputs: tuple[Output, ...], 
 def _sensitivity(args: argparse.Namespace, scene: Scene, outputs: tuple[Output, ...], held: contextlib.ExitStack) -> int:
     from watchsim.commands.write import write_study
     from watchsim.studies.sensitivity import found
-    from watchsim.studies.study_report import sensitivity_table
+    from watchsim.studies.study_report import sensitivity_table, sensitivity_text
 
     folder = study_folder(args, scene, "sensitivity", held)
     with stopping.keeping():
@@ -134,14 +132,17 @@ def _sensitivity(args: argparse.Namespace, scene: Scene, outputs: tuple[Output, 
                 scene, args.keys or None, outputs, executor_of(args, None), args.tol, folder, args.resume, progress
             )
         )
-        write_study(folder, done.numbers(), sensitivity_table(done), None if args.no_plots else _figure_of_sensitivity(done))
+        figure = None
+        if done.effects and not args.no_plots:
+            from watchsim.render.study_plot import plot_sensitivity
+
+            figure = plot_sensitivity(done)
+        write_study(folder, done.numbers(), sensitivity_table(done), figure)
     if args.json:
         from watchsim.results.tables import plain
 
         print_json(plain(done.numbers()))
     else:
-        from watchsim.studies.study_report import sensitivity_text
-
         print(sensitivity_text(done))
         print(f"Results: {folder}")
     return status_of(done.whole, folder, FINE)
@@ -218,9 +219,3 @@ def _figure_of_sweep(done: Any) -> Any:
     except ValueError as error:
         say(f"No plot: {error}.")
         return None
-
-
-def _figure_of_sensitivity(done: Any) -> Any:
-    from watchsim.render.study_plot import plot_sensitivity
-
-    return plot_sensitivity(done) if done.effects else None

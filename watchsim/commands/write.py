@@ -1,4 +1,9 @@
-"""How does a finished study get onto the disk, beside the rows that are there already?"""
+"""How does a finished run or study get onto the disk, whatever happens?
+
+A run may have taken a night. So what it needs from the disk is read before it begins; where its place can no longer be
+written it goes to another one; and what a fault of this program leaves of its numbers and pictures does not keep the motion
+from it.
+"""
 
 from __future__ import annotations
 
@@ -16,13 +21,6 @@ if TYPE_CHECKING:
     from watchsim.results.tables import EventLines
     from watchsim.scene.scene import Scene
     from watchsim.simulation.trajectory import Trajectory
-
-
-# How does a finished run get onto the disk, whatever happens?
-#
-# It may have taken a night. So what it needs from the disk is read before it begins; where its place can no longer be written
-# it
-# goes to another one; and what a fault of this program leaves of its numbers and pictures does not keep the motion from it.
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +68,7 @@ def write(
     """
     from watchsim.analysis.summary import tables
     from watchsim.commands.pictures import page, pictures
+    from watchsim.results.folder import EVENTS, TRAJECTORY, Packed
     from watchsim.simulation.state import Stop
     from watchsim.storage.write import real
 
@@ -78,29 +77,21 @@ def write(
     try:
         beside_folder = real(goal.folder).parent
         drawn = pictures(run, extras.plots, extras.movie, extras.gif, beside_folder, panels)
-        packed = _begun(run, beside_folder, lines)
+        packed: dict[str, Any] = {TRAJECTORY: Packed(run, beside_folder).write}  # it is being packed from now on
+        if lines is not None:
+            lines.settle(run)
+            packed[EVENTS] = functools.partial(lines.write, run)
         numbers = _numbers(run, extras, changed, goal.folder)
         said = [*(f"Note: {note}" for note in numbers["notes"]), report_text(run, numbers)]
-        told = {name: text.write for name, text in tables(run, beside_folder).items()}
+        texts = {name: text.write for name, text in tables(run, beside_folder).items()}
         report = "\n".join([*said, *_timeline(run)]) + "\n"
-        beside: dict[str, Any] = {**goal.scene, **packed, **told, "report.txt": report}
+        beside: dict[str, Any] = {**goal.scene, **packed, **texts, "report.txt": report}
     except Exception:
         say(f"The numbers of this run could not be computed. Its motion is kept in {_bare(run, goal)}")
         raise
     drawn |= page(run, numbers) if extras.report else {}
     _save(run, goal, numbers, beside, drawn)
     return numbers
-
-
-def _begun(run: Trajectory, folder: Path, lines: EventLines | None) -> dict[str, Any]:
-    """What writes the motion, which is being packed from now on, and the events."""
-    from watchsim.results.folder import EVENTS, TRAJECTORY, Packed
-
-    begun: dict[str, Any] = {TRAJECTORY: Packed(run, folder).write}
-    if lines is not None:
-        lines.settle(run)
-        begun[EVENTS] = functools.partial(lines.write, run)
-    return begun
 
 
 def report_text(run: Trajectory, summary: dict[str, Any]) -> str:
@@ -180,9 +171,6 @@ def _bare(run: Trajectory, goal: Goal) -> Path:
     return write_elsewhere(goal.folder.name, filler(run, None, goal.scene), "the motion")
 
 
-# How does a finished study get onto the disk, beside the rows that are there already?
-
-
 def write_study(folder: Path, numbers: dict[str, Any], table: dict[str, list[Any]], figure: Any, name: str = "sweep") -> None:
     """NAME.json, NAME.csv, NAME.parquet where pyarrow is installed, the plot as PNG, SVG and PDF.
 
@@ -197,7 +185,7 @@ def write_study(folder: Path, numbers: dict[str, Any], table: dict[str, list[Any
         for file, write in files.items():
             write_file(folder / file, write, "the table")
     except OSError as error:
-        place = write_elsewhere(folder.name, lambda made: _all_in(made, files), "the table")
+        place = write_elsewhere(folder.name, lambda made: [write(made / file) for file, write in files.items()], "the table")
         raise InputError(f"{error}.\nThe table was saved, without plots, in {place}") from error
     from watchsim.studies.workers import FIGURES, FILES
 
@@ -231,8 +219,3 @@ def _remove(path: Path) -> None:
         raise InputError(
             f"{path} is of an earlier study and could not be removed: {reason(error)}. The table is the new one."
         ) from error
-
-
-def _all_in(folder: Path, files: dict[str, Callable[[Path], object]]) -> None:
-    for name, write in files.items():
-        write(folder / name)

@@ -10,17 +10,18 @@ import numpy as np
 
 from watchsim.pages.html import Markup, element
 from watchsim.pages.player import path_data
-from watchsim.render.marks import decimals_for, signed
+from watchsim.render.marks import decimals_for
 from watchsim.render.palette import BLUED, LIGHT, PALE_PICTURE_STYLE, mixed
 from watchsim.render.parts import Part
 from watchsim.render.rows import reduced
 from watchsim.render.view import Frame, View, Window, bounds, hairsprings, poses, room_of, view, zigzags
 from watchsim.simulation.trajectory import Array, Trajectory
+from watchsim.units import signed
 
 WIDTH, HEIGHT = 560.0, 230.0
 LEFT, RIGHT, TOP, BOTTOM = 88.0, 12.0, 12.0, 44.0  # of the large letters on a telephone five fit between label and axis
 DOT = 2.4
-MOST = 1200  # dots of one series
+MOST_DOTS = 1200  # dots of one series
 
 
 @dataclass(frozen=True)
@@ -33,7 +34,7 @@ class Dots:
     look: str
 
 
-def scatter(series: Sequence[Dots], x_label: str, y_label: str, description: str, most: int = MOST) -> Markup:
+def scatter(series: Sequence[Dots], x_label: str, y_label: str, description: str, most: int = MOST_DOTS) -> Markup:
     """Dots over labelled axes, at most so many of a series; `description` is what the chart says to those who cannot see it."""
     clean = [_thinned(one, most) for one in series]
     xs, ys = (np.concatenate([getattr(one, axis) for one in clean]) for axis in "xy")
@@ -43,7 +44,12 @@ def scatter(series: Sequence[Dots], x_label: str, y_label: str, description: str
         for one in clean
         for x, y in zip(one.x.tolist(), one.y.tolist(), strict=True)
     ]
-    parts = (*_grid(x_axis, y_axis), *_labels(x_label, y_label), *marks)
+    middle = 0.5 * (TOP + HEIGHT - BOTTOM)
+    labels = (
+        element("text", x_label, x=0.5 * (LEFT + WIDTH - RIGHT), y=HEIGHT - 5, text_anchor="middle"),
+        element("text", y_label, x=13, y=middle, text_anchor="middle", transform=f"rotate(-90 13 {middle:g})"),
+    )
+    parts = (*_grid(x_axis, y_axis), *labels, *marks)
     picture = element("svg", *parts, viewBox=f"0 0 {WIDTH:g} {HEIGHT:g}", role="img", aria_label=description)
     key = element("p", *(_key(one) for one in series), class_="key") if len(series) > 1 else None
     return element("figure", picture, key, class_="chart")
@@ -101,14 +107,6 @@ def _grid(x_axis: _Axis, y_axis: _Axis) -> list[Markup]:
     return parts
 
 
-def _labels(x_label: str, y_label: str) -> tuple[Markup, Markup]:
-    middle = 0.5 * (TOP + HEIGHT - BOTTOM)
-    return (
-        element("text", x_label, x=0.5 * (LEFT + WIDTH - RIGHT), y=HEIGHT - 5, text_anchor="middle"),
-        element("text", y_label, x=13, y=middle, text_anchor="middle", transform=f"rotate(-90 13 {middle:g})"),
-    )
-
-
 def bars(entries: Sequence[tuple[str, float, str]], description: str) -> Markup:
     """A labelled bar for each (name, share of 1, value in words); negative shares run to the left of the zero line."""
     row, names, room = 30.0, 205.0, WIDTH - 205.0 - 150.0
@@ -118,11 +116,10 @@ def bars(entries: Sequence[tuple[str, float, str]], description: str) -> Markup:
     for k, (name, share, value) in enumerate(entries):
         y, width = row * k, room * abs(share) / (high - low)
         left = zero if share >= 0.0 else zero - width
+        size = {"width": f"{max(width, 0.8):.2f}", "height": row - 10}
         parts += (
             element("text", name, x=names - 8, y=y + 0.5 * row, dy="0.34em", text_anchor="end"),
-            element(
-                "rect", x=f"{left:.2f}", y=y + 5, width=f"{max(width, 0.8):.2f}", height=row - 10, rx=2, class_=f"s{k % 8}"
-            ),
+            element("rect", x=f"{left:.2f}", y=y + 5, **size, rx=2, class_=f"s{k % 8}"),
             element("text", value, x=f"{zero + (width if share >= 0 else 0) + 7:.2f}", y=y + 0.5 * row, dy="0.34em"),
         )
     picture = element("svg", *parts, viewBox=f"0 0 {WIDTH:g} {row * len(entries):g}", role="img", aria_label=description)
@@ -168,44 +165,22 @@ def poster(run: Trajectory, window: Window, parts: tuple[Part, ...], t: float) -
     pad = MARGIN * max(right - left, top - bottom)
     c, s = math.cos(seen.turn), math.sin(seen.turn)
     place = (c, -s, -s, -c, MM * (pad - left), MM * (pad + top))
-    groups = [
-        element(
-            "g",
-            element(
-                "path",
-                d=data,
-                fill="none" if part.ground else LIGHT.worn(part.finish).fill,
-                stroke=LIGHT.worn(part.finish).edge,
-            ),
-            transform=_matrix(*_pose(frames[part.body])),
-            data_part=number,
-        )
-        for number, (part, data) in enumerate(zip(parts, drawn, strict=True))
-    ]
-    coils = [
-        element(
-            "path",
-            d=_points(spring.line(frames, spring.coil.chords(COIL * spring.coil.outer))),
-            fill="none",
-            stroke=mixed(BLUED.line, LIGHT.background, PALE_PICTURE_STYLE),
-            stroke_width=f"{MM * spring.coil.width:.4g}",
-            data_coil=number,
-        )
-        for number, spring in enumerate(hairsprings(run.scene))
-    ]
+    groups = []
+    for number, (part, data) in enumerate(zip(parts, drawn, strict=True)):
+        look = LIGHT.worn(part.finish)
+        shape = element("path", d=data, fill="none" if part.ground else look.fill, stroke=look.edge)
+        groups.append(element("g", shape, transform=_matrix(*_pose(frames[part.body])), data_part=number))
+    coils, pale = [], mixed(BLUED.line, LIGHT.background, PALE_PICTURE_STYLE)
+    for number, spring in enumerate(hairsprings(run.scene)):
+        line, wide = _points(spring.line(frames, spring.coil.chords(COIL * spring.coil.outer))), f"{MM * spring.coil.width:.4g}"
+        coils.append(element("path", d=line, fill="none", stroke=pale, stroke_width=wide, data_coil=number))
     lines = [
         element("path", d=_points(spring.line(frames)), fill="none", stroke=BLUED.line, data_zigzag=number)
         for number, spring in enumerate(zigzags(run.scene))
     ]
     width, height = MM * (right - left + 2.0 * pad), MM * (top - bottom + 2.0 * pad)
-    return element(
-        "svg",
-        element("g", *coils, *groups, *lines, transform=_matrix(*place)),
-        id="poster",
-        viewBox=f"0 0 {width:.4f} {height:.4f}",
-        role="img",
-        aria_label=f"The mechanism at {t:.6g} s",
-    )
+    drawing, box = element("g", *coils, *groups, *lines, transform=_matrix(*place)), f"0 0 {width:.4f} {height:.4f}"
+    return element("svg", drawing, id="poster", viewBox=box, role="img", aria_label=f"The mechanism at {t:.6g} s")
 
 
 def _box(run: Trajectory, window: Window, seen: View, frames: dict[str, Array]) -> tuple[float, float, float, float]:

@@ -39,14 +39,11 @@ Content = str | Iterable["Content"] | None
 
 def element(name: str, *content: Content, **attributes: object) -> Markup:
     """<name …>content</name>; `class_`, `aria_label` and the like lose their underscores, None leaves an attribute out."""
-    told = "".join(
-        f' {key.rstrip("_").replace("_", "-")}="{html.escape(str(value))}"'
-        for key, value in attributes.items()
-        if value is not None
-    )
+    listed = {key.rstrip("_").replace("_", "-"): value for key, value in attributes.items() if value is not None}
+    inside = "".join(f' {key}="{html.escape(str(value))}"' for key, value in listed.items())
     if name in VOID and not content:
-        return Markup(f"<{name}{told}/>")
-    return Markup(f"<{name}{told}>{joined(content)}</{name}>")
+        return Markup(f"<{name}{inside}/>")
+    return Markup(f"<{name}{inside}>{joined(content)}</{name}>")
 
 
 def joined(content: Content) -> Markup:
@@ -109,7 +106,7 @@ def image(png: bytes, words: str, width: int) -> Markup:
 
 # Files to be saved from a page: the scene with its drawings, and the numbers, one zip archive, and each by itself.
 
-MOST = 300_000  # bytes of packed files; a page must fit into a mail
+MOST_PACKED = 300_000  # bytes of packed files; a page must fit into a mail
 LONGEST = 20_000_000  # bytes of a table that is worth trying: packed it is a tenth
 TYPES = {"json": "application/json", "csv": "text/csv", "toml": "application/toml", "svg": "image/svg+xml"}
 HEADER = 30  # bytes of a local header, to which name and extra field are added (PKWARE APPNOTE 4.3.7)
@@ -134,7 +131,7 @@ def packed_files(run: Trajectory, numbers: Mapping[str, Any]) -> tuple[dict[str,
 
 def _chosen(raw: Mapping[str, bytes]) -> tuple[set[str], list[str]]:
     """Names that fit, the smallest first, and those that do not."""
-    room, fitting = MOST, set()
+    room, fitting = MOST_PACKED, set()
     sizes = {name: len(_zipped({name: content})) for name, content in raw.items()}
     for name in sorted(sizes, key=lambda name: sizes[name]):
         if sizes[name] <= room:
@@ -164,22 +161,8 @@ def _entry(archive: bytes, info: zipfile.ZipInfo) -> dict[str, Any]:
 ASSETS = "watchsim.pages.assets"
 PLOTTING = ("uplot/LICENSE", "uplot/uPlot.iife.min.js", "uplot/uPlot.min.css")
 SCRIPTS = (
-    "bytes",
-    "motion",
-    "coil",
-    "zigzag",
-    "scene",
-    "solids",
-    "view",
-    "contacts",
-    "clock",
-    "sound",
-    "curves",
-    "plots",
-    "strip",
-    "player",
-    "files",
-    "main",
+    *("bytes", "motion", "coil", "zigzag", "scene", "solids", "view", "contacts", "clock"),
+    *("sound", "curves", "plots", "strip", "player", "files", "main"),
 )
 
 

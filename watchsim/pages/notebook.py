@@ -49,25 +49,17 @@ def sweep_html(sweep: Sweep) -> str:
     if not count:
         return card(f"Sweep of {sweep.title}", lines)
     head = [*map(axis_label, sweep.axes), *map(output_label, sweep.outputs), "verdict"]
-    rows = [
-        [
-            *(_value(usual_value(axis, row[axis.key]), 6) for axis in sweep.axes),
-            *(_value(row[one.column], 5) for one in sweep.outputs),
-            row["verdict"] or "",
-        ]
-        for row in sweep.rows[:ROWS]
-    ]
+    rows = []
+    for row in sweep.rows[:ROWS]:
+        values = (_value(usual_value(axis, row[axis.key]), 6) for axis in sweep.axes)
+        rows.append([*values, *(_value(row[one.column], 5) for one in sweep.outputs), row["verdict"] or ""])
     shown = table(head, rows, f"the first {ROWS} of {count} points" if count > ROWS else "")
     try:
         figure = plot_sweep(sweep, PRINTED)
     except ValueError:  # keys without numbers
         return card(f"Sweep of {sweep.title}", lines, shown)
-    return card(
-        f"Sweep of {sweep.title}",
-        lines,
-        shown,
-        element("div", image(small_png(figure, DOTS_STUDY_CARDS), "The sweep as curves", SHOWN)),
-    )
+    curves = image(small_png(figure, DOTS_STUDY_CARDS), "The sweep as curves", SHOWN)
+    return card(f"Sweep of {sweep.title}", lines, shown, element("div", curves))
 
 
 def sensitivity_html(found: Sensitivity) -> str:
@@ -77,13 +69,10 @@ def sensitivity_html(found: Sensitivity) -> str:
     if not count:
         return card(f"What matters in {found.title}", lines)
     head = ["change", *map(output_label, outputs)]
-    rows = [
-        [
-            f"{one.quantity.key} +{one.quantity.change_words}",
-            *(_value(one.of(o.column, one.quantity.change), 5) for o in outputs),
-        ]
-        for one in found.effects[:ROWS]
-    ]
+    rows = []
+    for one in found.effects[:ROWS]:
+        values = (_value(one.of(output.column, one.quantity.change), 5) for output in outputs)
+        rows.append([f"{one.quantity.key} +{one.quantity.change_words}", *values])
     shown = table(head, rows, f"the first {ROWS} of {count} quantities" if count > ROWS else "")
     bars = small_png(plot_sensitivity(found, PRINTED), DOTS_STUDY_CARDS)
     return card(f"What matters in {found.title}", lines, shown, element("div", image(bars, "Effects as bars", SHOWN)))
@@ -102,21 +91,24 @@ DOTS = 120  # of a series of a chart
 def scene_html(scene: Scene) -> str:
     """Title, bodies, contacts, frequency, and the mechanism at its start."""
     names = [body.name for body in scene.bodies]
-    told = f"{', '.join(names[:NAMED])}{f' and {len(names) - NAMED} more' if len(names) > NAMED else ''}"
+    listed = f"{', '.join(names[:NAMED])}{f' and {len(names) - NAMED} more' if len(names) > NAMED else ''}"
     lines = [
-        f"{_count(len(names), 'body', 'bodies')}: {told}",
-        _count(len(scene.contacts), "contact", "contacts") + " declared",
+        f"{_count(len(names), 'body', 'bodies')}: {listed}",
+        f"{_count(len(scene.contacts), 'contact', 'contacts')} declared",
     ]
     hertz = frequency(scene) if swings(scene) else None
     if hertz:
         lines.append(f"{hertz:.6g} Hz, {7200.0 * hertz:.6g} vph")
-    run = at_rest(scene, compile_scene(scene))
-    return card(scene.title, lines, _picture(run, (0.0, 1.0), 0.0))
+    return card(scene.title, lines, _picture(at_rest(scene, compile_scene(scene)), (0.0, 1.0), 0.0))
 
 
 def trajectory_html(run: Trajectory) -> str:
     """Title, amplitude, rate and beat error, how it ended, and the mechanism at the end."""
-    lines = [f"{run.simulated:g} s simulated, {len(run.t)} rows, {len(run.events)} events", *_timing(run), run.stop.sentence]
+    lines = [f"{run.simulated:g} s simulated, {len(run.t)} rows, {len(run.events)} events"]
+    if swings(run.scene):
+        found = beats(run)
+        lines.append(", ".join(_means(averages(found, last_window(run, found.nominal_period)))))
+    lines.append(run.stop.sentence)
     try:
         window = shown(run, None)
     except ValueError:  # no rows were kept
@@ -134,21 +126,14 @@ def beats_html(found: Beats) -> str:
     return card(f"Beats of {found.body}", repr(found).strip("<>").split(": ", 1)[1].split("; "), chart)
 
 
-def _timing(run: Trajectory) -> list[str]:
-    if not swings(run.scene):
-        return []
-    found = beats(run)
-    return [", ".join(_means(averages(found, last_window(run, found.nominal_period))))]
-
-
 def _means(found: Cycle | Averages) -> list[str]:
     """Amplitude, rate and beat error, each with its error, as far as they are known."""
-    values = ((label.lower(), getattr(found, name), getattr(found, f"{name}_error"), unit) for name, label, unit in AVERAGED)
-    return [
-        " ".join(filter(None, (name, *with_error(value, error, unit))))
-        for name, value, error, unit in values
-        if value is not None
-    ]
+    lines = []
+    for name, label, unit in AVERAGED:
+        value, error = getattr(found, name), getattr(found, f"{name}_error")
+        if value is not None:
+            lines.append(" ".join(filter(None, (label.lower(), *with_error(value, error, unit)))))
+    return lines
 
 
 def _count(number: int, one: str, more: str) -> str:
@@ -184,14 +169,9 @@ class Player:
         return f"<Player of {self.title!r}: {len(self.page.encode()) / 1e3:.0f} kB>"
 
     def _repr_html_(self) -> str:
-        return element(
-            "iframe",
-            srcdoc=self.page,
-            sandbox="allow-scripts allow-downloads",
-            title=f"Player of {self.title}",
-            loading="lazy",
-            style=f"width:100%;height:{self.height}px;border:0",
-        )
+        look, rights = f"width:100%;height:{self.height}px;border:0", "allow-scripts allow-downloads"
+        title = f"Player of {self.title}"
+        return element("iframe", srcdoc=self.page, sandbox=rights, title=title, loading="lazy", style=look)
 
 
 def show(run: Trajectory, window: Sequence[float] | None = None, *, height: int = HEIGHT) -> Player:

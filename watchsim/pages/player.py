@@ -9,19 +9,20 @@ import base64
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from watchsim.analysis.forces import Forces, forces
+from watchsim.analysis.forces import Forces, forces, just_before
 from watchsim.analysis.phases import Phase
 from watchsim.analysis.timegrapher import noises
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc
 from watchsim.pages.solids import packed_solids
-from watchsim.render.marks import ContactMarks, Side, goes_round
+from watchsim.render.marks import ContactMarks, goes_round
 from watchsim.render.movie import busy
 from watchsim.render.palette import BLUED, FIXED, Finish, looks
 from watchsim.render.parts import Part, is_round, loops_of, outline, parts, spoke
@@ -161,7 +162,7 @@ def _number(metres: float) -> str:
 FINE, COARSEST = 5e-7, 1e-3  # of the picture's size: what outlines may be off, at first, and where there is too much to keep
 LEAST_ARM = 0.25  # of the picture's size
 STEP = 4.0  # from one try to the next coarser one
-MOST = 360_000  # bytes of motion, before they are put into text
+MOST_MOTION = 360_000  # bytes of motion, before they are put into text
 SLOPE, CURVE = 1e-4, 2e-3  # of their largest values: what velocities and accelerations may be off where FINE holds
 
 
@@ -197,51 +198,35 @@ def channels(run: Trajectory, window: Window, size: float) -> tuple[list[Channel
     middle = 0.5 * (t[:-1] + t[1:])
     halfway = run.sample(middle)
     kept = slice(first, last)
-    told = [_of(run, body, kept, middle, *halfway) for body in run.scene.bodies if body.name in run.slices]
+    bodies = [body for body in run.scene.bodies if body.name in run.slices]
     share = FINE
     while share <= COARSEST:
         found, taken = [], 0
-        for one in told:
-            found.append(_channel(one, _weights(run, one.body, LEAST_ARM * size), share * size, share / FINE))
+        for body in bodies:
+            found.append(_channel(run, body, kept, (middle, *halfway), size, share))
             taken += found[-1].bytes
-            if taken > MOST:
+            if taken > MOST_MOTION:
                 break
-        if taken <= MOST:
+        if taken <= MOST_MOTION:
             return found, share * size
         share *= STEP
     raise TooMuch(
-        f"{window[0]:.9g} s to {window[1]:.9g} s hold more motion than a page can, which is {MOST / 1e3:.0f} kB of it; "
+        f"{window[0]:.9g} s to {window[1]:.9g} s hold more motion than a page can, which is {MOST_MOTION / 1e3:.0f} kB of it; "
         "choose a shorter window"
     )
 
 
-@dataclass(frozen=True)
-class _Told:
-    """What the run says of one body: q, u, a (rows, n) at times t, and q, u midway between rows."""
+def _channel(
+    run: Trajectory, body: Body, kept: slice, halfway: tuple[Array, Array, Array], size: float, share: float
+) -> Channel:
+    """Of the rows `kept` those that one body needs, so that its outlines are off by no more than a `share` of the picture.
 
-    body: Body
-    t: Array
-    q: Array
-    u: Array
-    a: Array
-    middle: Array
-    q_middle: Array
-    u_middle: Array
-
-
-def _of(run: Trajectory, body: Body, kept: slice, middle: Array, q_middle: Array, u_middle: Array) -> _Told:
-    """The columns of that body, of the rows `kept` and midway between them."""
-    own = run.slices[body.name]
-    rows = run.t[kept], run.q[kept, own], run.u[kept, own], run.a[kept, own]
-    return _Told(body, *rows, middle, q_middle[:, own], u_middle[:, own])
-
-
-def _channel(told: _Told, weight: Array, off: float, looser: float) -> Channel:
-    """The rows of one body; outlines may be off by `off` metres, velocities by `looser` times their share.
-
-    `weight` says how many metres an outline moves per unit of each coordinate.
+    `halfway`: t, q and u between all these rows; `size` (m) of the picture. Velocities are as much looser as outlines.
     """
-    t, q, u, a, middle = told.t, told.q, told.u, told.a, told.middle
+    own, off, looser = run.slices[body.name], share * size, share / FINE
+    t, q, u, a = run.t[kept], run.q[kept, own], run.u[kept, own], run.a[kept, own]
+    middle, q_middle, u_middle = halfway[0], halfway[1][:, own], halfway[2][:, own]
+    weight = _weights(run, body, LEAST_ARM * size)
     largest = [np.maximum(np.abs(values).max(axis=0, initial=0.0), 1e-300) for values in (u, a)]
     noise = np.zeros(q.shape[1])
 
@@ -252,9 +237,9 @@ def _channel(told: _Told, weight: Array, off: float, looser: float) -> Channel:
         times = np.concatenate((t[i + 1 : j], middle[i:j]))
         s = ((times - t[i]) / h)[:, None]
         place, rate = between(s, np.full_like(s, h), (q[i], u[i], a[i]), (q[j], u[j], a[j]), noise)
-        if np.max(np.abs(place - np.concatenate((q[i + 1 : j], told.q_middle[i:j]))) @ weight) > off:
+        if np.max(np.abs(place - np.concatenate((q[i + 1 : j], q_middle[i:j]))) @ weight) > off:
             return False
-        if np.any(np.abs(rate - np.concatenate((u[i + 1 : j], told.u_middle[i:j]))) > looser * SLOPE * largest[0]):
+        if np.any(np.abs(rate - np.concatenate((u[i + 1 : j], u_middle[i:j]))) > looser * SLOPE * largest[0]):
             return False
         pull = _acceleration(s[: j - i - 1], h, (u[i], a[i]), (u[j], a[j]))
         return not np.any(np.abs(pull - a[i + 1 : j]) > looser * CURVE * largest[1])
@@ -263,10 +248,10 @@ def _channel(told: _Told, weight: Array, off: float, looser: float) -> Channel:
     felt = np.any(np.abs(np.diff(u, axis=0)) > looser * SLOPE * largest[0], axis=1)
     felt |= np.any(np.abs(np.diff(a, axis=0)) > looser * CURVE * largest[1], axis=1)
     jumps = np.flatnonzero((np.diff(t) <= 0.0) & felt)
-    kept = kept_rows(len(t), fits, (*jumps.tolist(), *(jumps + 1).tolist()))
-    kept = _without_repeats(kept, q, u, a)
+    rows = kept_rows(len(t), fits, (*jumps.tolist(), *(jumps + 1).tolist()))
+    rows = _without_repeats(rows, q, u, a)
     base = q[0] if len(q) else np.zeros(q.shape[1])
-    return Channel(told.body.name, t[kept], base, np.hstack((q[kept] - base, u[kept], a[kept])))
+    return Channel(body.name, t[rows], base, np.hstack((q[rows] - base, u[rows], a[rows])))
 
 
 def _acceleration(s: Array, h: float, left: tuple[Array, Array], right: tuple[Array, Array]) -> Array:
@@ -343,9 +328,9 @@ def instants(run: Trajectory, window: Window) -> list[list[Any]]:
 
 
 def _words(run: Trajectory, events: Any, names: list[str]) -> str:
-    told = list(dict.fromkeys(_one(run, event, names) for event in events))
-    more = len(told) - NAMED
-    return "; ".join(told[:NAMED]) + (f"; {more} more" if more > 0 else "")
+    found = list(dict.fromkeys(_one(run, event, names) for event in events))
+    more = len(found) - NAMED
+    return "; ".join(found[:NAMED]) + (f"; {more} more" if more > 0 else "")
 
 
 def _one(run: Trajectory, event: Any, names: list[str]) -> str:
@@ -410,43 +395,27 @@ def touching(run: Trajectory, window: Window) -> list[dict[str, Any]]:
         return []
     closed = {number: marks.stretches(number, window) for number in marks.numbers}
     closed = {number: found for number, found in closed.items() if found}
-    told = None if _crowd(closed, window) > CROWD else _forces(run, window, closed)
+    crowd = sum(end - start for stretches in closed.values() for start, end in stretches) / (window[1] - window[0])
+    found = None if crowd > CROWD else _forces(run, window, closed)
     names = [body.name for body in run.scene.bodies]
-    return [
-        {
-            **_sides(marks.sides(number), names),
-            "name": _name(run, number),
-            "closed": doubles(np.array(stretches).reshape(-1)),
-            **(_samples(told, number, stretches) if told is not None else {}),
-        }
-        for number, stretches in closed.items()
-    ]
-
-
-def _crowd(closed: dict[int, list[Window]], window: Window) -> float:
-    """How many contacts are closed at a time, on average."""
-    return sum(end - start for stretches in closed.values() for start, end in stretches) / (window[1] - window[0])
-
-
-def _sides(sides: tuple[Side, Side], names: Sequence[str]) -> dict[str, Any]:
-    """The circle of the one, and the circle or line of the other, in their bodies' frames."""
-    a, b = sides
-    found: dict[str, Any] = {"a": [names.index(a.body), a.x, a.y, a.radius], "b": [names.index(b.body), b.x, b.y, b.side]}
-    if b.normal is not None:
-        found["normal"] = list(b.normal)
-    return found
-
-
-def _name(run: Trajectory, number: int) -> str:
-    pair = run.pairs[number]
-    return f"{pair.body_a}.{pair.layer_a} / {pair.body_b}.{pair.layer_b}"
+    listed = []
+    for number, stretches in closed.items():
+        # The circle of the one, and the circle or line of the other, in their bodies' frames.
+        (a, b), pair = marks.sides(number), run.pairs[number]
+        one: dict[str, Any] = {"a": [names.index(a.body), a.x, a.y, a.radius], "b": [names.index(b.body), b.x, b.y, b.side]}
+        if b.normal is not None:
+            one["normal"] = list(b.normal)
+        one["name"] = f"{pair.body_a}.{pair.layer_a} / {pair.body_b}.{pair.layer_b}"
+        one["closed"] = doubles(np.array(stretches).reshape(-1))
+        listed.append(one if found is None else one | _samples(found, number, stretches))
+    return listed
 
 
 def _forces(run: Trajectory, window: Window, closed: dict[int, list[Window]]) -> Forces | None:
     """Forces at rows, right after and right before every event, and evenly between."""
     changes = np.unique([t for stretches in closed.values() for stretch in stretches for t in stretch])
     edges = np.unique(np.concatenate(([window[0]], changes[(changes > window[0]) & (changes < window[1])], [window[1]])))
-    before = edges[1:] - np.maximum(JUST * np.diff(edges), np.spacing(edges[1:]))
+    before = just_before(edges, JUST)
     rows = run.t[(run.t > window[0]) & (run.t < window[1])]
     rows = rows[:: max(1, len(rows) // (MOST_TOUCHING // 2))]
     times = np.unique(np.concatenate((edges[:-1], before, rows, np.linspace(*window, EVENLY))))
@@ -457,27 +426,28 @@ def _forces(run: Trajectory, window: Window, closed: dict[int, list[Window]]) ->
         return None
 
 
-def _samples(told: Forces, number: int, stretches: list[Window]) -> dict[str, str]:
+def _samples(found: Forces, number: int, stretches: list[Window]) -> dict[str, str]:
     """Time, normal and tangential force (N) while the contact is closed, as few as straight lines between them allow."""
-    column = np.flatnonzero(told.pairs == number)
+    column = np.flatnonzero(found.pairs == number)
     if len(column) == 0:
         return {}
-    t, values = told.t, np.column_stack((told.normal[:, column[0]], told.tangential[:, column[0]]))
-    held = np.isfinite(told.point[:, column[0], 0])
+    values = np.column_stack((found.normal[:, column[0]], found.tangential[:, column[0]]))
+    held = np.isfinite(found.point[:, column[0], 0])
     rows: list[NDArray[np.int64]] = []
     for start, end in stretches:
-        inside = np.flatnonzero(held & (t >= start) & (t < end))
+        inside = np.flatnonzero(held & (found.t >= start) & (found.t < end))
         if len(inside):
-            rows.append(inside[_thinned(t[inside], values[inside])])
+            t, own = found.t[inside], values[inside]
+            allowed = OFF * max(float(np.abs(own).max()), 1e-300)
+            rows.append(inside[kept_rows(len(t), partial(_on_line, t, own, allowed))])
     if not rows:
         return {}
     kept = np.concatenate(rows)
-    return {"t": doubles(t[kept]), "force": floats(values[kept])}
+    return {"t": doubles(found.t[kept]), "force": floats(values[kept])}
 
 
-def _thinned(t: Array, values: Array) -> NDArray[np.int64]:
-    allowed = OFF * max(float(np.abs(values).max()), 1e-300)
-    return kept_rows(len(t), lambda i, j: bool(np.all(off_line(t, values, i, j) <= allowed)))
+def _on_line(t: Array, values: Array, allowed: float, i: int, j: int) -> bool:
+    return bool(np.all(off_line(t, values, i, j) <= allowed))
 
 
 WIDE, HIGH = 1280.0, 720.0  # of the picture by which up and the part to follow are chosen
@@ -549,7 +519,7 @@ def _zigzag(spring: Zigzag, names: list[str]) -> dict[str, Any]:
 def _body(run: Trajectory, window: Window, body: Body, look: Finish, rows: dict[str, object] | None) -> dict[str, Any]:
     scene = run.scene
     carries = any(other.on == body.name for other in scene.bodies)
-    told: dict[str, Any] = {
+    found: dict[str, Any] = {
         "name": body.name,
         "motion": body.motion,
         "on": -1 if body.on is None else [one.name for one in scene.bodies].index(body.on),
@@ -561,16 +531,16 @@ def _body(run: Trajectory, window: Window, body: Body, look: Finish, rows: dict[
         "size": size_of(body) if loops_of(body) else 0.0,
     }
     if rows is not None:
-        told["rows"] = rows
+        found["rows"] = rows
         own = sampled(run, body, window)[:, 2]
         carrier = 0.0 if body.on is None else sampled(run, scene.body(body.on), window)[:, 2]
-        told["round"] = body.motion != "slide" and body.name != roles(scene).oscillator and goes_round(own - carrier)
+        found["round"] = body.motion != "slide" and body.name != roles(scene).oscillator and goes_round(own - carrier)
     # Mass times acceleration is a force only where nothing else rides along.
     if body.on is None and not carries and body.motion != "fixed":
-        told["inertia"] = body.inertia if body.motion == "pivot" else body.mass
+        found["inertia"] = body.inertia if body.motion == "pivot" else body.mass
     if loops_of(body) and is_round(body):
-        told["spoke"] = list(spoke(body, size_of(body)))
-    return told
+        found["spoke"] = list(spoke(body, size_of(body)))
+    return found
 
 
 def _view(run: Trajectory, window: Window) -> dict[str, Any]:
@@ -579,16 +549,16 @@ def _view(run: Trajectory, window: Window) -> dict[str, Any]:
     points, _, traveller = room_of(run, window, None)
     free = not any(run.scene.gravity) and traveller is None
     turns = (0.0, -0.5 * np.pi) if free else (chosen.turn,)
-    told: dict[str, Any] = {
+    found: dict[str, Any] = {
         "turn": chosen.turn,
         "free": free,  # up may be chosen to fit the screen
         "boxes": [[turn, *np.concatenate(bounds(points, turn)).tolist()] for turn in turns],
     }
     if chosen.follow is not None:
-        told["follow"] = {
+        found["follow"] = {
             "body": [body.name for body in run.scene.bodies].index(chosen.follow),
             "centre": list(chosen.centre),
             "track": list(chosen.track),
             "sight": HIGH / chosen.scale,
         }
-    return told
+    return found

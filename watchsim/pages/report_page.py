@@ -57,22 +57,22 @@ def check_page(path: str | os.PathLike[str]) -> Path:
 
 def page_text(run: Trajectory, window: Sequence[float] | None = None, numbers: Mapping[str, Any] | None = None) -> str:
     """The page as text; see `report`."""
-    told = plain(summary(run) if numbers is None else numbers)
+    known = plain(summary(run) if numbers is None else numbers)
     span, moved, off = _motion(run, window)
     size = picture_size(run, span)
     found = phases_within(run, span)
     opening = _opening(found, span)
     parts = drawn_parts(run.scene, size)
     data = player_data(run, span, moved, parts, found, opening)
-    files, left_out = packed_files(run, told)
+    files, left_out = packed_files(run, known)
     data["files"] = files
     places = {
         "poster": poster(run, span, parts, opening),
-        "verdict": verdict(told) or Markup(""),
+        "verdict": verdict(known) or Markup(""),
         "lead": _lead(run, span),
-        "sheet": sheet(run, told),
+        "sheet": sheet(run, known),
         "saved": _saved(left_out),
-        "made": _made(told, off),
+        "made": _made(known, off),
     }
     return page(run.scene.title, places, data)
 

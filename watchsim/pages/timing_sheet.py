@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from watchsim.analysis.energy import energy_shares
+from watchsim.analysis.flows import energy_shares
 from watchsim.analysis.headlines import expected_text, headlines
 from watchsim.analysis.phases import Phase, each_phase
 from watchsim.analysis.timing import Beats, beats
@@ -17,16 +17,11 @@ from watchsim.escapement.function_report import Table, measured, tables
 from watchsim.escapement.measure import measure
 from watchsim.pages.charts import Dots, bars, scatter, strip
 from watchsim.pages.html import Content, Markup, element, joined, section, table
-from watchsim.render.marks import decimals_for, signed
+from watchsim.render.marks import decimals_for
 from watchsim.scene.roles import swings
 from watchsim.scene.scene import Scene
 from watchsim.simulation.trajectory import Array, Trajectory
-from watchsim.units import metric
-
-HEAD = ("quantity", "entry stone", "exit stone")
-STONES = "stones and wheel"
-MINUS, DASH = "\N{MINUS SIGN}", "\N{EN DASH}"
-BOTH = 2  # values of a row: of entry and of exit
+from watchsim.units import metric, signed
 
 
 def function_tables(scene: Scene) -> Iterator[Markup]:
@@ -46,14 +41,10 @@ def _table(one: Table) -> Markup:
     for row in one.rows:
         words = row.words.strip()
         name = element("span", words, class_="of") if row.words != words else words
-        values = [_printed(value) for value in row.values]
-        values += [""] * (BOTH - len(values))
+        values = ["–" if value == "-" else value.replace("-", "−") for value in (*row.values, "", "")[:2]]
         rows.append([name, *values, *([row.worst] if worst else [])])
-    return table((*HEAD, "worst tooth") if worst else HEAD, rows, (one.title or STONES).capitalize())
-
-
-def _printed(value: str) -> str:
-    return DASH if value == "-" else value.replace("-", MINUS)
+    head = ("quantity", "entry stone", "exit stone", *(["worst tooth"] if worst else []))
+    return table(head, rows, (one.title or "stones and wheel").capitalize())
 
 
 LONG = 6  # entries of a list that are written out
@@ -77,15 +68,15 @@ def _rows(path: str, value: Any) -> Iterator[tuple[str, str]]:
         for number, item in enumerate(value):
             yield from _rows(f"{path}.{number}", item)
     else:
-        yield path, _told(value)
+        yield path, _as_text(value)
 
 
-def _told(value: Any) -> str:
+def _as_text(value: Any) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if not _is_list(value):
         return str(value)
-    shown = ", ".join(_told(item) for item in value[:LONG])
+    shown = ", ".join(_as_text(item) for item in value[:LONG])
     return shown if len(value) <= LONG else f"{shown}, … ({len(value)} in all)"
 
 
@@ -149,13 +140,13 @@ def phase_tables(phases: Iterable[Phase]) -> Iterator[Markup]:
         if not kinds:
             continue
         lengths = [(kind.name, float(np.mean(kind.lasts)), kind.number) for kind in kinds]
-        told = f"Phases of {title}: {', '.join(f'{name} {length:.3g} ms' for name, length, _ in lengths)}"
+        words = f"Phases of {title}: {', '.join(f'{name} {length:.3g} ms' for name, length, _ in lengths)}"
         count = max(len(kind.lasts) for kind in kinds)
         anchor = all(np.array_equal(kind.turns[:, 1], kind.turns[:, 2]) for kind in kinds)  # the oscillator is its own lever
         shown = [k for k, head in enumerate(HEAD_PHASE_TABLES) if not (anchor and head.startswith("lever"))]
         rows = [[kind.row()[k] for k in shown] for kind in kinds]
         heads = [HEAD_PHASE_TABLES[k] for k in shown]
-        parts += [strip(lengths, "ms", told), table(heads, rows, f"{title.capitalize()}: means of {count} beats")]
+        parts += [strip(lengths, "ms", words), table(heads, rows, f"{title.capitalize()}: means of {count} beats")]
     if parts:
         yield section("phases", "Phases of a beat", *parts)
 
@@ -204,10 +195,10 @@ def timekeeping(run: Trajectory, numbers: Mapping[str, Any]) -> Iterator[Markup]
 
 def _computed(numbers: Mapping[str, Any]) -> str:
     """The error of the computation beside the scatter, where a second run gave it."""
-    told = numbers.get("error_bars")
-    if not told or not told.get("complete"):
+    found = numbers.get("error_bars")
+    if not found or not found.get("complete"):
         return ""
-    moved = [f"{told['differences'][name]:.1g}{unit}" for name, _, unit in AVERAGED if name in told["differences"]]
+    moved = [f"{found['differences'][name]:.1g}{unit}" for name, _, unit in AVERAGED if name in found["differences"]]
     return f"; a more exact run moved them by {', '.join(moved)}" if moved else ""
 
 
@@ -248,12 +239,12 @@ def _charts(run: Trajectory, found: Beats) -> Iterator[Markup]:
         return
     tape = 1e3 * _tape(found)
     least, most = (float(bound(tape)) for bound in (np.nanmin, np.nanmax))
-    told = f"Time gained against {1.0 / found.nominal_period:.6g} Hz, beat by beat: from {least:.3g} ms to {most:.3g} ms."
-    yield _half("Paper tape", scatter(both_ways(found, found.mark, tape), "time (s)", "gained (ms)", told))
+    words = f"Time gained against {1.0 / found.nominal_period:.6g} Hz, beat by beat: from {least:.3g} ms to {most:.3g} ms."
+    yield _half("Paper tape", scatter(both_ways(found, found.mark, tape), "time (s)", "gained (ms)", words))
     unit, scale = ("°", float(np.degrees(1.0))) if found.angular else ("mm", 1e3)
     swing = scale * found.amplitude
-    told = f"Amplitude of {len(found)} beats: {swing[0]:.4g} {unit} at first, {swing[-1]:.4g} {unit} at the end."
-    yield _half("Amplitude", scatter(both_ways(found, found.t, swing), "time (s)", f"amplitude ({unit})", told))
+    words = f"Amplitude of {len(found)} beats: {swing[0]:.4g} {unit} at first, {swing[-1]:.4g} {unit} at the end."
+    yield _half("Amplitude", scatter(both_ways(found, found.t, swing), "time (s)", f"amplitude ({unit})", words))
 
 
 def _half(title: str, chart: Markup) -> Markup:
@@ -291,16 +282,9 @@ JUDGED = {True: "✓ kept", False: "✗ missed", None: "not judged"}
 
 def sheet(run: Trajectory, numbers: Mapping[str, Any]) -> Markup:
     """All sections of the sheet that this run has something to say to."""
-    sections = (
-        *timekeeping(run, numbers),
-        *phase_tables(each_phase(run)),
-        *function_tables(run.scene),
-        *_energy(run),
-        *_judgement(numbers),
-        *_parameters(run),
-        section("words", "The run in words", element("pre", headlines(run, numbers), tabindex=0)),
-    )
-    return joined(sections)
+    parts = (timekeeping(run, numbers), phase_tables(each_phase(run)), function_tables(run.scene), _energy(run))
+    words = section("words", "The run in words", element("pre", headlines(run, numbers), tabindex=0))
+    return joined((*parts, _judgement(numbers), _parameters(run), words))
 
 
 def verdict(numbers: Mapping[str, Any]) -> Markup | None:
@@ -310,13 +294,13 @@ def verdict(numbers: Mapping[str, Any]) -> Markup | None:
         word, message = "stops", numbers.get("stopped_message")
     if word is None:
         return None
-    look, told = VERDICTS.get(str(word), ("open", str(word).capitalize()))
+    look, words = VERDICTS.get(str(word), ("open", str(word).capitalize()))
     more = str(message or "")
-    if more.casefold().startswith(told.casefold()):  # said once is enough
-        more = more[len(told) :]
+    if more.casefold().startswith(words.casefold()):  # said once is enough
+        more = more[len(words) :]
     elif more:
         more = f" {more}"
-    return element("p", element("strong", told), more or None, class_=f"verdict {look}")
+    return element("p", element("strong", words), more or None, class_=f"verdict {look}")
 
 
 def _energy(run: Trajectory) -> Iterator[Markup]:
@@ -330,10 +314,10 @@ def _energy(run: Trajectory) -> Iterator[Markup]:
         if abs(share) >= 5e-4
     ]
     power = f", {metric(shares.supplied / run.simulated, 'W', 4)} on average" if run.simulated > 0.0 else ""
-    told = "Where the energy went: " + ", ".join(f"{cause} {100.0 * share:.1f} %" for cause, share, _ in entries)
+    words = "Where the energy went: " + ", ".join(f"{cause} {100.0 * share:.1f} %" for cause, share, _ in entries)
     closes = f"The account closes to {run.energy.get('residual_relative', 0.0):.1g} of it."
     note = f"{metric(shares.supplied, 'J', 4)} went in{power}. {closes}"
-    yield section("energy", "Energy", element("p", note, class_="note"), bars(entries, told))
+    yield section("energy", "Energy", element("p", note, class_="note"), bars(entries, words))
 
 
 def _judgement(numbers: Mapping[str, Any]) -> Iterator[Markup]:
@@ -343,8 +327,8 @@ def _judgement(numbers: Mapping[str, Any]) -> Iterator[Markup]:
     warnings = [element("li", f"Warning: {text}.", class_="warning") for text in numbers.get("warnings") or ()]
     warnings += [element("li", f"Note: {text}.") for text in numbers.get("notes") or ()]
     if rows or warnings:
-        told = table(("judged", "promise of the scene"), rows, "What the scene promises", numeric=False) if rows else None
-        yield section("judged", "Promises and notes", element("ul", *warnings) if warnings else None, told)
+        judged = table(("judged", "promise of the scene"), rows, "What the scene promises", numeric=False) if rows else None
+        yield section("judged", "Promises and notes", element("ul", *warnings) if warnings else None, judged)
 
 
 def _parameters(run: Trajectory) -> Iterator[Markup]:

@@ -208,7 +208,7 @@ def fitting(
     for size in FORMATS_GIF if gif else FORMATS:
         figure = Figure(figsize=((size[0] + 0.5) / DPI, (size[1] + 0.5) / DPI), dpi=DPI)
         frame = lay_out(figure, run, window, (window[1] - window[0]) / 2000.0, LIGHT).frame
-        seen = view(run, window, shared_room(frame, extras, size[1]).room, zoom, turn)
+        seen = view(run, window, shared_room(frame, extras, size[1])[0], zoom, turn)
         if seen.follow is not None:
             return best, None
         if seen.scale > GAIN * largest:

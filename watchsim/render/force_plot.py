@@ -15,19 +15,19 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from watchsim.analysis.flows import pair_name
-from watchsim.analysis.forces import Forces, forces
+from watchsim.analysis.forces import Forces, forces, just_before
 from watchsim.analysis.phases import Phase
 from watchsim.analysis.timeline import BEGINNING, RESTING
 from watchsim.render import style
 from watchsim.render.marks import clock
 from watchsim.render.palette import looks
-from watchsim.render.phase_bands import name_key, shade
+from watchsim.render.phase_plots import name_key, names_in, shade
 from watchsim.render.rows import reduced
 from watchsim.render.view import Window
 from watchsim.scene.scene import Scene
 from watchsim.simulation.trajectory import Array, Trajectory
 
-MOST = 12_000  # instants; each takes a quarter of a millisecond
+MOST_INSTANTS = 12_000  # instants; each takes a quarter of a millisecond
 FINE = 400  # instants at least
 JUST = 1e-6  # of a step: so long before its end its contacts still hold
 
@@ -46,10 +46,10 @@ def curves(run: Trajectory, spans: Sequence[Window]) -> list[Curves]:
     """Forces over some stretches of time: right after every row, just before the next, and between."""
     times = [_instants(run, span) for span in spans]
     count = sum(map(len, times))
-    if count > MOST:
+    if count > MOST_INSTANTS:
         raise ValueError(
             f"{spans[0][0]:.9g} s to {spans[-1][1]:.9g} s hold {count} instants at which forces would have to be worked out, "
-            f"more than {MOST}; choose a shorter window"
+            f"more than {MOST_INSTANTS}; choose a shorter window"
         )
     found = forces(run, np.concatenate(times))
     ends = np.cumsum([0, *map(len, times)]).tolist()
@@ -71,7 +71,7 @@ def _summed(run: Trajectory, found: Forces, own: slice) -> Curves:
 def _instants(run: Trajectory, span: Window) -> Array:
     inside = run.t[(run.t > span[0]) & (run.t < span[1])]
     edges = np.unique(np.concatenate(([span[0]], inside, [span[1]])))
-    before = edges[1:] - np.maximum(JUST * np.diff(edges), np.spacing(edges[1:]))
+    before = just_before(edges, JUST)
     return np.unique(np.concatenate((edges[:-1], before, np.linspace(span[0], before[-1], FINE))))
 
 
@@ -82,7 +82,6 @@ FLAT = 1e-2  # a range smaller than this part of the largest force is not magnif
 ROOMY = 50.0  # mm, a panel over which name and key stand side by side
 LINE, BEFORE_NAME = 3.2, 2.8  # mm, of a line of names in a key; letters wide, the line before a name and the gap behind it
 BEFORE, AFTER = 0.08, 0.12  # of a beat's phases: what is shown besides
-PREFIXES = ((1.0, "N"), (1e3, "mN"), (1e6, "µN"), (1e9, "nN"))
 DASHES = ("-", (0, (4, 1.2)), (0, (1.2, 1.0)), (0, (5, 1, 1, 1)))
 
 
@@ -110,10 +109,10 @@ def plot_forces(run: Trajectory, window: Sequence[float] | None = None, width: f
     """
     cycle = style.shown(run, window)
     spans = [cycle.window] if window is not None else _spans(run, cycle)
-    told = curves(run, spans)
-    pairs = list(dict.fromkeys(name for one in told for name in one.normal))
-    pivots = list(dict.fromkeys(name for one in told for name in one.pivots))
-    names = list(dict.fromkeys(one.name for beat in cycle.phases for one in beat if one.name not in RESTING))
+    found = curves(run, spans)
+    pairs = list(dict.fromkeys(name for one in found for name in one.normal))
+    pivots = list(dict.fromkeys(name for one in found for name in one.pivots))
+    names = names_in(cycle.phases, RESTING)
     rows = len(pairs) + bool(pivots)
     if not rows:
         raise ValueError("no contact is closed there, and nothing turns on a pivot: there are no forces to plot")
@@ -121,19 +120,25 @@ def plot_forces(run: Trajectory, window: Sequence[float] | None = None, width: f
     wide = width / len(spans) - LEFT - RIGHT
     bearings = BEARINGS + left_out(run.scene)
     columns, lines = _key_beside(bearings, pivots, wide if wide >= ROOMY else width - LEFT - RIGHT)
-    layout = Layout(pairs, pivots, bearings, _units(told), columns, raised=lines > 0, wide=wide >= ROOMY)
+    layout = Layout(pairs, pivots, bearings, _units(found), columns, raised=lines > 0, wide=wide >= ROOMY)
     tops = [top + k * (OVER + TALL + BETWEEN) + OVER for k in range(rows)]
     tops[-1] += lines * LINE
     made = style.figure(width, tops[-1] + TALL + BETWEEN + FOOT)
     style.heading(made, run.scene.title, "Forces at contacts, and loads of bearings")
     if names:
         name_key(made, names, style.HEADING)
-    for c, (span, one) in enumerate(zip(spans, told, strict=True)):
+    for c, (span, one) in enumerate(zip(spans, found, strict=True)):
         own = [beat for beat in cycle.phases if beat[-1].end > span[0] and beat[0].start < span[1]]
         left = c * (LEFT + wide + RIGHT) + LEFT
-        axes = [style.panel(made, left, top, wide, TALL) for top in tops]
-        _column(axes, run, span, (one, own), layout, first=c == 0)
-    _same_limits(made.axes, rows)
+        column = [style.panel(made, left, top, wide, TALL) for top in tops]
+        _column(column, run, span, one, own, layout, first=c == 0)
+    for k in range(rows):  # panels side by side show the same range
+        row = made.axes[k::rows]
+        low, high = min(axes.get_ylim()[0] for axes in row), max(axes.get_ylim()[1] for axes in row)
+        for axes in row:
+            axes.set_ylim(low, high)
+            style.ticks(axes.yaxis, 4)
+            style.ticks(axes.xaxis, 5)
     return made
 
 
@@ -165,12 +170,10 @@ def _spans(run: Trajectory, cycle: style.Shown) -> list[Window]:
 
 
 def _column(
-    axes: list[Axes], run: Trajectory, span: Window, shown: tuple[Curves, list[list[Phase]]], layout: Layout, first: bool
+    axes: list[Axes], run: Trajectory, span: Window, one: Curves, phases: list[list[Phase]], layout: Layout, first: bool
 ) -> None:
-    one, phases = shown
-    wide = layout.wide
-    told, worn = clock(span), looks(run.scene)
-    x = (one.t - told.base) * told.factor
+    wide, worn, time = layout.wide, looks(run.scene), clock(span)
+    x = time.at(one.t)
     nothing = np.zeros(len(x))
     groups: list[tuple[str, list[tuple[str, Array, str, Any]]]] = [
         (name, [("normal", one.normal.get(name, nothing), style.SERIES[0], "-"),
@@ -185,10 +188,8 @@ def _column(
         factor, unit = layout.units[name]
         handles = []
         for label, values, colour, dashes in lines:
-            gid = f"force {name} {label}"
-            handles += panel_axes.plot(
-                *reduced(x, factor * values), linestyle=dashes, color=colour, linewidth=style.CURVE, gid=gid, zorder=3
-            )
+            look: dict[str, Any] = {"linestyle": dashes, "color": colour, "gid": f"force {name} {label}", "zorder": 3}
+            handles += panel_axes.plot(*reduced(x, factor * values), linewidth=style.CURVE, **look)
         drawn = np.concatenate([factor * values for _, values, _, _ in lines])
         style.limits(panel_axes, float(drawn.min()), float(drawn.max()), 0.05, FLAT, 1.0)
         panel_axes.ticklabel_format(axis="y", useOffset=False)
@@ -200,36 +201,20 @@ def _column(
         where: dict[str, Any] = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0 + low), "borderaxespad": 0.0}
         if wide or not first:  # side by side in a column of text: names on the left, keys on the right
             style.key(panel_axes, [(h, line[0]) for h, line in zip(handles, lines, strict=True)], ncols=columns, **where)
-        panel_axes.set_xlim(*((end - told.base) * told.factor for end in span))
+        panel_axes.set_xlim(*map(time.at, span))
         for beat in phases:
-            shade(panel_axes, beat, told.base, told.factor)
+            shade(panel_axes, beat, time.base, time.factor)
     for panel_axes in axes[:-1]:
         panel_axes.set_xticklabels([])
-    axes[-1].set_xlabel(told.label if wide or not told.base else f"{told.unit} after {told.base:.9g} s", labelpad=1.5)
+    axes[-1].set_xlabel(time.label if wide or not time.base else f"{time.unit} after {time.base:.9g} s", labelpad=1.5)
 
 
-def _units(told: Sequence[Curves]) -> dict[str, tuple[float, str]]:
+def _units(found: Sequence[Curves]) -> dict[str, tuple[float, str]]:
     """Factor and unit of each row of panels, the same for the beats side by side."""
     rows: dict[str, list[Array]] = {}
-    for one in told:
+    for one in found:
         for name, values in (*one.normal.items(), *one.tangential.items()):
             rows.setdefault(name, []).append(values)
         rows.setdefault(BEARINGS, []).extend(one.pivots.values())
-    return {name: scale(values) for name, values in rows.items()}
-
-
-def scale(values: object) -> tuple[float, str]:
-    """Factor and unit in which forces (N) are read easily."""
-    largest = max((float(np.abs(one).max(initial=0.0)) for one in values), default=0.0)  # type: ignore[attr-defined]
-    return next(((factor, unit) for factor, unit in PREFIXES if largest * factor >= 1.0), PREFIXES[1])
-
-
-def _same_limits(axes: Sequence[Axes], rows: int) -> None:
-    """Panels side by side show the same range."""
-    for k in range(rows):
-        row = axes[k::rows]
-        low, high = min(one.get_ylim()[0] for one in row), max(one.get_ylim()[1] for one in row)
-        for one in row:
-            one.set_ylim(low, high)
-            style.ticks(one.yaxis, 4)
-            style.ticks(one.xaxis, 5)
+    largest = {name: max((float(np.abs(one).max(initial=0.0)) for one in own), default=0.0) for name, own in rows.items()}
+    return {name: style.scaled_unit(most, "N", otherwise=1) for name, most in largest.items()}

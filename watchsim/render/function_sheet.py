@@ -10,8 +10,10 @@ import math
 import os
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from textwrap import wrap
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -27,6 +29,7 @@ from watchsim.geometry.primitives import Point
 from watchsim.mechanism.compile import Compiled
 from watchsim.render.palette import INK
 from watchsim.render.parts import Posed
+from watchsim.render.style import COLUMN, FULL, MM
 from watchsim.scene.scene import Scene
 from watchsim.simulation.trajectory import Array
 from watchsim.storage.write import write_file
@@ -58,19 +61,18 @@ def arc(axes: Axes, centre: Point, radius: float, angles: tuple[float, float], c
 
 def note(axes: Axes, place: Point, words: str, colour: str = INK, aside: tuple[float, float] = (0.0, 0.0)) -> None:
     """Words beside a place (mm), shifted by `aside` (pt), on a pale ground so that what lies below does not disturb."""
-    axes.annotate(
-        words, xy=place, xytext=aside, textcoords="offset points", color=colour, fontsize=SIZE, ha="center", va="center",
-        zorder=8, bbox=HALO, annotation_clip=False,
-    )  # fmt: skip
+    _beside(axes, place, words, aside, colour, annotation_clip=False)
 
 
 def pointed(axes: Axes, place: Point, words: str, aside: tuple[float, float], colour: str = INK) -> None:
     """The same with a line from the words to the place."""
     line = {"arrowstyle": "-", "color": colour, "linewidth": 0.4, "shrinkA": 0, "shrinkB": 0}
-    axes.annotate(
-        words, xy=place, xytext=aside, textcoords="offset points", color=colour, fontsize=SIZE, ha="center", va="center",
-        zorder=8, bbox=HALO, arrowprops=line,
-    )  # fmt: skip
+    _beside(axes, place, words, aside, colour, arrowprops=line)
+
+
+def _beside(axes: Axes, place: Point, words: str, aside: tuple[float, float], colour: str, **look: Any) -> None:
+    middle = {"ha": "center", "va": "center", "fontsize": SIZE, "zorder": 8, "bbox": HALO}
+    axes.annotate(words, xy=place, xytext=aside, textcoords="offset points", color=colour, **{**middle, **look})
 
 
 # Each view is drawn in millimetres in the movement, as the scene places it.
@@ -132,7 +134,7 @@ def scale_bar(axes: Axes) -> None:
     note(axes, (x + 0.5 * length, y), f"{length:g} mm", "#333333", (0.0, 6.0))
 
 
-def locked(axes: Axes, views: Views, k: int, aspect: float) -> None:
+def locked(axes: Axes, aspect: float, views: Views, k: int) -> None:
     """The stone that locks as entry (0) or exit (1), lever on the bank: draw, lock, run and total lock."""
     function = views.function
     assert function.pallets is not None and function.passages is not None
@@ -160,7 +162,7 @@ def locked(axes: Axes, views: Views, k: int, aspect: float) -> None:
     mark(axes, pivot, far, (at, dropped_at), words[0], LEVER_INK, -20.0 * across)
     mark(axes, pivot, far, (dropped_at, corner), words[1], LEVER_INK, 24.0 * across)
     draw_mark(axes, toe, pivot, met.normal, numbers.draw.value, half)
-    axes.set_title(f"{STONES[k]} stone, lever on its bank", fontsize=8.0, loc="left", pad=3.0)
+    _title(axes, f"{STONES[k]} stone, lever on its bank")
 
 
 def _is_stone(views: Views, contact: int, lever: str) -> bool:
@@ -192,12 +194,16 @@ def draw_mark(axes: Axes, toe: Point, pivot: Point, normal: Point, draw: float, 
             break
 
 
+def _title(axes: Axes, words: str) -> None:
+    axes.set_title(words, fontsize=8.0, loc="left", pad=3.0)
+
+
 def _within(axes: Axes, place: Point) -> bool:
     (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
     return left < place[0] < right and low < place[1] < high
 
 
-def dropped(axes: Axes, views: Views, k: int, aspect: float) -> None:
+def dropped(axes: Axes, aspect: float, views: Views, k: int) -> None:
     """The wheel before and after the drop from the entry (0: inside drop) or exit (1: outside drop) stone."""
     function = views.function
     assert function.pallets is not None and function.passages is not None
@@ -225,13 +231,11 @@ def dropped(axes: Axes, views: Views, k: int, aspect: float) -> None:
     away = math.dist(place, centre)
     aside = (34.0 * (centre[0] - place[0]) / away, 34.0 * (centre[1] - place[1]) / away)
     pointed(axes, place, f"{word} drop {degrees(numbers.drop.value)}", aside, WHEEL_INK)
-    through = (
-        "" if passage.caught is None else ("direct impulse, after the " if passage.direct else "indirect impulse, after the ")
-    )
-    axes.set_title(f"let off by the {through}{STONES[k]} stone", fontsize=8.0, loc="left", pad=3.0)
+    through = "" if passage.caught is None else f"{'direct' if passage.direct else 'indirect'} impulse, after the "
+    _title(axes, f"let off by the {through}{STONES[k]} stone")
 
 
-def lift(axes: Axes, views: Views, aspect: float) -> None:
+def lift(axes: Axes, aspect: float, views: Views) -> None:
     """Fork and balance as the pin comes in on the entry stone's bank, and where both stand when it leaves."""
     function = views.function
     assert function.fork is not None and function.banks is not None and function.passages is not None
@@ -257,14 +261,12 @@ def lift(axes: Axes, views: Views, aspect: float) -> None:
     arc(axes, pivot, 1.55 * radius, (at, at + turn), LEVER_INK)
     note(axes, polar(pivot, 1.72 * radius, at + 0.5 * turn), f"lift angle {degrees(abs(turn))}", LEVER_INK)
     arc(axes, pivot, 1.28 * radius, (at, at + entry.way * made.unlocking[k].value), LEVER_INK)
-    pointed(
-        axes, polar(pivot, 1.28 * radius, at + 0.5 * entry.way * made.unlocking[k].value),
-        f"unlocking {degrees(made.unlocking[k].value)}", (-30.0 if math.cos(at) < 0.0 else 30.0, 14.0), LEVER_INK,
-    )  # fmt: skip
-    axes.set_title("pin entering the fork (filled), leaving it (dashed)", fontsize=8.0, loc="left", pad=3.0)
+    middle, aside = at + 0.5 * entry.way * made.unlocking[k].value, (-30.0 if math.cos(at) < 0.0 else 30.0, 14.0)
+    pointed(axes, polar(pivot, 1.28 * radius, middle), f"unlocking {degrees(made.unlocking[k].value)}", aside, LEVER_INK)
+    _title(axes, "pin entering the fork (filled), leaving it (dashed)")
 
 
-def whole(axes: Axes, views: Views, aspect: float) -> None:
+def whole(axes: Axes, aspect: float, views: Views) -> None:
     """All parts, the entry stone locked, names beside the pivots."""
     function = views.function
     assert function.passages is not None
@@ -283,13 +285,13 @@ def whole(axes: Axes, views: Views, aspect: float) -> None:
     assert function.parts is not None
     reach = 0.55 * math.dist((1e3 * start.x, 1e3 * start.y), wheel)
     arc(axes, wheel, reach, (-2.1, -2.1 + 1.1 * function.parts.way) if function.parts.way > 0 else (-1.0, -2.1), WHEEL_INK)
-    axes.set_title(f"{STONES[0]} stone locked", fontsize=8.0, loc="left", pad=3.0)
+    _title(axes, f"{STONES[0]} stone locked")
 
 
 def shape(views: Views) -> float:
     """Width over height of all parts."""
     axes = Figure().add_subplot()
-    whole(axes, views, 1.0)
+    whole(axes, 1.0, views)
     (left, right), (low, high) = _extent(axes)
     return (right - left) / (high - low)
 
@@ -308,7 +310,7 @@ AROUND = 1.15  # times the way of the tooth: half the picture
 ASIDE = 24.0  # pt, words from their arc
 
 
-def impulse_view(axes: Axes, views: Views, k: int, aspect: float) -> None:
+def impulse_view(axes: Axes, aspect: float, views: Views, k: int) -> None:
     """The impulse after the entry (0) or exit (1) stone is unlocked: its beginning filled, its end dashed."""
     function = views.function
     assert function.passages is not None and function.impulses is not None and function.parts is not None
@@ -330,7 +332,7 @@ def impulse_view(axes: Axes, views: Views, k: int, aspect: float) -> None:
         # Where both arcs lie side by side, each has its words on its own side.
         toward = views.pivot(name) if given.kind == DIRECT else centre
         _turn(axes, views.pivot(name), (meets, leaves), toward, f"{name} {degrees(angle)}", colour)
-    axes.set_title(f"{given.kind} impulse: begins (filled), ends (dashed)", fontsize=8.0, loc="left", pad=3.0)
+    _title(axes, f"{given.kind} impulse: begins (filled), ends (dashed)")
 
 
 def _ends(views: Views, passage: Passage, given: Impulse) -> tuple[Array, Array]:
@@ -358,9 +360,7 @@ def _turn(axes: Axes, pivot: Point, ends: tuple[Point, Point], toward: Point, wo
     pointed(axes, place, words, (ASIDE * (toward[0] - place[0]) / away, ASIDE * (toward[1] - place[1]) / away), colour)
 
 
-MM = 1.0 / 25.4  # inches
-FULL, COLUMN = 170.0, 85.0
-MARGIN, GAP, TITLE, HEAD_FUNCTION_SHEET = 3.0, 4.0, 11.0, 3.5  # mm
+MARGIN, GAP, TITLE, ABOVE = 3.0, 4.0, 11.0, 3.5  # mm
 FIRST, PANEL = 80.0, 58.0  # mm, height of the first row and of the others
 ROW = 3.4  # mm, of the table
 DPI = 300
@@ -397,20 +397,16 @@ def _places(count: int, width: float, shape: float) -> tuple[list[tuple[float, f
     room = width - 2.0 * MARGIN
     if width <= 1.5 * COLUMN:
         tall = [min(1.2 * room, room / shape)] + [0.8 * room] * (count - 1)
-        tops = [TITLE + HEAD_FUNCTION_SHEET + sum(tall[:i]) + i * (GAP + HEAD_FUNCTION_SHEET) for i in range(count + 1)]
+        tops = [TITLE + ABOVE + sum(tall[:i]) + i * (GAP + ABOVE) for i in range(count + 1)]
         return [(MARGIN, top, room, high) for top, high in zip(tops, tall, strict=False)], tops[-1]
     half = 0.5 * (room - GAP)
     first = min(half, max(0.3 * room, FIRST * shape))
-    places = [
-        (MARGIN, TITLE + HEAD_FUNCTION_SHEET, first, FIRST),
-        (MARGIN + first + GAP, TITLE + HEAD_FUNCTION_SHEET, room - first - GAP, FIRST),
-    ]
-    top = TITLE + 2.0 * HEAD_FUNCTION_SHEET + FIRST + GAP
-    for i in range(2, count):
-        places.append(
-            (MARGIN + ((i - 2) % 2) * (half + GAP), top + ((i - 2) // 2) * (PANEL + GAP + HEAD_FUNCTION_SHEET), half, PANEL)
-        )
-    return places[:count], top + math.ceil((count - 2) / 2) * (PANEL + GAP + HEAD_FUNCTION_SHEET) - HEAD_FUNCTION_SHEET
+    top = TITLE + ABOVE
+    places = [(MARGIN, top, first, FIRST), (MARGIN + first + GAP, top, room - first - GAP, FIRST)]
+    top = TITLE + 2.0 * ABOVE + FIRST + GAP
+    for i in range(count - 2):
+        places.append((MARGIN + (i % 2) * (half + GAP), top + (i // 2) * (PANEL + GAP + ABOVE), half, PANEL))
+    return places[:count], top + math.ceil((count - 2) / 2) * (PANEL + GAP + ABOVE) - ABOVE
 
 
 def write_sheet(path: str | os.PathLike[str], figure: Figure) -> None:
@@ -421,16 +417,11 @@ def write_sheet(path: str | os.PathLike[str], figure: Figure) -> None:
 
 
 def _views(views: Views) -> list[Callable[[Axes, float], None]]:
-    detached = views.function.banks is not None
-    made: list[Callable[[Axes, float], None]] = [lambda axes, aspect: whole(axes, views, aspect)]
+    made: list[Callable[[Axes, float], None]] = [partial(whole, views=views)]
     if views.function.fork is not None:
-        made.append(lambda axes, aspect: lift(axes, views, aspect))
-    for k in (0, 1) if detached else ():
-        made.append(lambda axes, aspect, k=k: locked(axes, views, k, aspect))  # type: ignore[misc]
-    for k in (0, 1) if views.function.impulses is not None else ():
-        made.append(lambda axes, aspect, k=k: impulse_view(axes, views, k, aspect))  # type: ignore[misc]
-    for k in (0, 1):
-        made.append(lambda axes, aspect, k=k: dropped(axes, views, k, aspect))  # type: ignore[misc]
+        made.append(partial(lift, views=views))
+    for view, there in ((locked, views.function.banks), (impulse_view, views.function.impulses), (dropped, True)):
+        made += [partial(view, views=views, k=k) for k in (0, 1) if there is not None]
     return made
 
 

@@ -17,7 +17,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.path import Path
-from matplotlib.transforms import Affine2D, Bbox, IdentityTransform
+from matplotlib.transforms import Affine2D, IdentityTransform
 
 from watchsim.analysis.phases import Phase
 from watchsim.geometry.loops import Loop
@@ -38,7 +38,7 @@ from watchsim.simulation.trajectory import Array, Trajectory
 AIR = 0.12  # of an inset, around what it shows
 STAYS = 2.5  # what sweeps more than so many times its size is followed
 FOLLOWED = 1.0  # of its diagonal is in sight on every side of its middle: enough of what it meets
-MOST = 6  # insets
+MOST_INSETS = 6  # insets
 ACROSS, DOWN = 0.37, 0.3  # share of a wide picture's width and of a tall one's height that insets take
 GAP = 0.012  # of the longer side
 
@@ -69,8 +69,8 @@ def beside(frame: Frame, count: int) -> tuple[Frame, tuple[Frame, ...]]:
     """Room for the mechanism and boxes for `count` insets: to the right in a wide frame, above in a tall one."""
     if count == 0:
         return frame, ()
-    if count > MOST:
-        raise ValueError(f"insets: {count} are too many to be read; show at most {MOST}")
+    if count > MOST_INSETS:
+        raise ValueError(f"insets: {count} are too many to be read; show at most {MOST_INSETS}")
     wide, gap = frame.width >= frame.height, GAP * max(frame.width, frame.height)
     across, down = (ACROSS * frame.width, frame.height) if wide else (frame.width, DOWN * frame.height)
     left, top = frame.left + frame.width - across, frame.bottom + frame.height
@@ -173,26 +173,22 @@ class InsetPicture:
         self._transforms = {body.name: Affine2D() for body in scene.bodies}
         made = parts(scene, CHORD / inset.view.scale, HATCH * unit / inset.view.scale)
         self._shapes = [self._shape(part) for part in made]
-        box = inset.box
-        edge = Path([(box.left, box.bottom), (box.left + box.width, box.bottom + box.height)])
-        frame = _rectangle(edge)
-        self._sheet = self._own(
-            LastingPatch(frame, facecolor=style.background, linewidth=0.0, transform=IdentityTransform()), False
-        )
+        box, place = inset.box, IdentityTransform()
+        frame = _rectangle((box.left, box.bottom), (box.left + box.width, box.bottom + box.height))
+        self._sheet = LastingPatch(frame, facecolor=style.background, linewidth=0.0, transform=place)
         look = {"fill": False, "edgecolor": style.faint, "linewidth": max(1.4 * unit, 1.0)}
-        self._border = self._own(LastingPatch(frame, transform=IdentityTransform(), **look), False)
+        self._border = LastingPatch(frame, transform=place, **look)
+        for patch in (self._sheet, self._border):
+            patch.set_figure(figure)
 
     def place_in(self, matrix: Array, frames: dict[str, Array], room: Frame) -> LastingPatch:
         """The rectangle of the picture (its map `matrix`) that the inset enlarges."""
         half = 0.5 * np.array([self._inset.box.width, self._inset.box.height]) / self._inset.view.scale
         scale = float(np.hypot(*matrix[:2, 0]))
         middle = matrix[:2, :2] @ np.array(self._inset.centre(frames)) + matrix[:2, 2]
-        corners = _rectangle(Path(np.array([middle - scale * half, middle + scale * half])))
+        corners = _rectangle(middle - scale * half, middle + scale * half)
         look = {"fill": False, "edgecolor": self._style.ink, "linewidth": 0.8 * self._thin, "alpha": 0.55}
-        patch = LastingPatch(corners, transform=IdentityTransform(), **look)
-        patch.set_figure(self._figure)
-        patch.set_clip_box(Bbox.from_bounds(room.left, room.bottom, room.width, room.height))
-        return patch
+        return LastingPatch(corners, transform=IdentityTransform(), **look).drawn_on(self._figure, room.box)
 
     def draw(self, renderer: RendererBase, frames: dict[str, Array], marks: Marks, out_pixels: Pixels) -> None:
         """Draw the inset for the poses x, y, angle of one instant."""
@@ -222,11 +218,8 @@ class InsetPicture:
         points = np.asarray(part.faces.vertices)
         middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
         look = self._style.worn(part.finish)
-        edge = {
-            "edgecolor": self._style.line(look) if part.ground else look.edge,
-            "joinstyle": "round",
-            "transform": self._transforms[part.body],
-        }
+        colour = self._style.line(look) if part.ground else look.edge
+        edge = {"edgecolor": colour, "joinstyle": "round", "transform": self._transforms[part.body]}
         if part.ground:
             paths = [part.faces] if part.strokes is None else [part.strokes, part.faces]
             made = [LastingPatch(path, fill=False, linewidth=self._thin, **edge) for path in paths]
@@ -234,18 +227,13 @@ class InsetPicture:
             made = [LastingPatch(part.faces, facecolor=look.fill, linewidth=self._thin, **edge)]
         return _Shape(part.body, tuple(map(self._own, made)), middle, float(np.hypot(*(points - middle).T).max()))
 
-    def _own(self, patch: LastingPatch, clipped: bool = True) -> LastingPatch:
-        patch.set_figure(self._figure)
-        box = self._inset.box
-        if clipped:
-            patch.set_clip_box(Bbox.from_bounds(box.left, box.bottom, box.width, box.height))
-        return patch
+    def _own(self, patch: LastingPatch) -> LastingPatch:
+        return patch.drawn_on(self._figure, self._inset.box.box)
 
 
-def _rectangle(diagonal: Path) -> Path:
-    (x0, y0), (x1, y1) = np.asarray(diagonal.vertices)
-    codes = [Path.MOVETO, Path.LINETO, Path.LINETO, Path.LINETO, Path.CLOSEPOLY]
-    return Path([(x0, y0), (x1, y0), (x1, y1), (x0, y1), (x0, y0)], codes)
+def _rectangle(low: Sequence[float] | Array, high: Sequence[float] | Array) -> Path:
+    (x0, y0), (x1, y1) = low, high
+    return Path([(x0, y0), (x1, y0), (x1, y1), (x0, y1), (x0, y0)], closed=True)
 
 
 DPI = 72.0  # one point is one pixel
@@ -268,7 +256,8 @@ class Strip:
         self._column = run.slices[body].start
         self._last: tuple[int, Pixels, tuple[float, float]] | None = None
         rows = dense(run, window)
-        self._reach = [_reach(self._told(values[:, self._column])) for values in rows[1:3]]
+        self._travels = self._body.motion in ("slide", "free")
+        self._reach = [_reach(self._shown(values)) for values in rows[1:3]]
         speed = rows[2][:, self._column]
         swings = 0.5 * float(np.count_nonzero(np.diff(np.signbit(speed))))
         self._pages = min(max(1, math.ceil(swings / SWINGS - 0.25)), MOST_PAGES)
@@ -286,16 +275,13 @@ class Strip:
         middle = place[1].start + left + (share - number) * (right - left)
         half = max(1, round(0.06 * self._size))
         columns = slice(round(middle) - half, round(middle) + half)
-        out_pixels[place[0].start : bottom - round(self._foot()), columns, :3] = np.round(
-            255 * np.array(to_rgb(self._style.contact))
-        )
+        foot = FOOT * self._size + BELOW * 0.5 * (self._room.height - FOOT * self._size)  # of the lower axes, pixels
+        colour = np.round(255 * np.array(to_rgb(self._style.contact)))
+        out_pixels[place[0].start : bottom - round(foot), columns, :3] = colour
 
-    def _foot(self) -> float:
-        """Pixels from the bottom of the strip to that of its lower axes."""
-        return FOOT * self._size + BELOW * 0.5 * (self._room.height - FOOT * self._size)
-
-    def _told(self, values: Array) -> Array:
-        return values * 1e3 if self._body.motion in ("slide", "free") else np.degrees(values)
+    def _shown(self, rows: Array) -> Array:
+        """Of q or u, in mm or degrees."""
+        return rows[:, self._column] * 1e3 if self._travels else np.degrees(rows[:, self._column])
 
     def _page(self, number: int) -> tuple[Pixels, tuple[float, float]]:
         """The pixels of one page, and the columns of its first and last instant."""
@@ -306,50 +292,31 @@ class Strip:
         left, right, foot = LEFT * self._size, 1.6 * self._size, FOOT * self._size
         each = (height - foot) / 2.0
         t, q, u, _ = dense(self._run, (start, end))
-        told, line = clock((start, end)), self._style.curve(looks(self._run.scene)[self._body.name])
-        travels = self._body.motion in ("slide", "free")
-        units = ("travel (mm)", "velocity (mm/s)") if travels else ("angle (°)", "velocity (°/s)")
+        time, line = clock((start, end)), self._style.curve(looks(self._run.scene)[self._body.name])
+        units = ("travel (mm)", "velocity (mm/s)") if self._travels else ("angle (°)", "velocity (°/s)")
         for k, (values, unit) in enumerate(zip((q, u), units, strict=True)):
-            box = (
-                left / width,
-                (foot + (1 - k) * each + BELOW * each) / height,
-                1.0 - (left + right) / width,
-                0.86 * each / height,
-            )
-            axes = figure.add_axes(box)
-            self._shade(axes, start, end, told.base, told.factor)
-            axes.plot(
-                (t - told.base) * told.factor, self._told(values[:, self._column]), color=line, linewidth=0.11 * self._size
-            )
-            axes.set_xlim((start - told.base) * told.factor, (end - told.base) * told.factor)
+            bottom = foot + (1 - k) * each + BELOW * each
+            axes = figure.add_axes((left / width, bottom / height, 1.0 - (left + right) / width, 0.86 * each / height))
+            for phase in self._phases:
+                colour = self._style.phases.get(phase.name)
+                if colour is not None and phase.end > start and phase.start < end:
+                    axes.axvspan(time.at(phase.start), time.at(phase.end), color=colour, linewidth=0.0, zorder=0)
+            axes.plot(time.at(t), self._shown(values), color=line, linewidth=0.11 * self._size)
+            axes.set_xlim(time.at(start), time.at(end))
             axes.set_ylim(*self._reach[k])
             self._dress(axes, f"{self._body.name}\n{unit}", k == 1)
-        axes.set_xlabel(told.label, fontsize=0.8 * self._size, color=self._style.ink, labelpad=0.05 * self._size)
+        axes.set_xlabel(time.label, fontsize=0.8 * self._size, color=self._style.ink, labelpad=0.05 * self._size)
         canvas.draw()
         return np.array(canvas.buffer_rgba())[:height, :width].copy(), (left, width - right)
-
-    def _shade(self, axes: Axes, start: float, end: float, base: float, factor: float) -> None:
-        for phase in self._phases:
-            if phase.name in self._style.phases and phase.end > start and phase.start < end:
-                axes.axvspan(
-                    (phase.start - base) * factor,
-                    (phase.end - base) * factor,
-                    color=self._style.phases[phase.name],
-                    linewidth=0.0,
-                    zorder=0,
-                )
 
     def _dress(self, axes: Axes, unit: str, last: bool) -> None:
         axes.set_facecolor(self._style.background)
         axes.locator_params(axis="y", nbins=3)
         axes.grid(True, color=self._style.grid, linewidth=0.8)
         axes.set_axisbelow(True)
-        axes.tick_params(
-            labelsize=0.8 * self._size, colors=self._style.ink, length=0.0, labelbottom=last, pad=0.25 * self._size
-        )
-        axes.set_ylabel(
-            unit, fontsize=0.8 * self._size, color=self._style.ink, rotation=0, ha="left", va="center", parse_math=False
-        )
+        size, ink = 0.8 * self._size, self._style.ink
+        axes.tick_params(labelsize=size, colors=ink, length=0.0, labelbottom=last, pad=0.25 * self._size)
+        axes.set_ylabel(unit, fontsize=size, color=ink, rotation=0, ha="left", va="center", parse_math=False)
         axes.yaxis.set_label_coords((1.6 - LEFT) * self._size / (self._room.width - (LEFT + 1.6) * self._size), 0.5)
         for side, spine in axes.spines.items():
             spine.set_visible(side in ("left", "bottom"))

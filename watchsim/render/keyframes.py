@@ -23,7 +23,7 @@ from watchsim.simulation.trajectory import Array, Trajectory
 EVENLY = 2000  # instants besides the rows of the run
 TURN = math.radians(0.02)  # what an angle may be off between keys
 SHARE = 2e-4  # of its body's travel: what a place may be
-CLOSEST = 1e-6  # s on the screen between two keys: single precision must tell them apart
+CLOSEST = 1e-6  # s on the screen between two keys: single precision must distinguish them
 
 
 def keyframes(run: Trajectory, window: Sequence[float] | None, speed: float) -> list[Track]:

@@ -1,6 +1,7 @@
-"""How do angle and velocity of every body run over time?
+"""How do angle and velocity of every body run over time, and one over the other?
 
 plot_kinematics(run, window=(19.4, 19.75)).savefig("beat.png")
+plot_phase_portrait(run).savefig("portrait.pdf")
 """
 
 from __future__ import annotations
@@ -8,8 +9,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
-from typing import IO, Any
+from typing import IO
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -22,9 +24,9 @@ from matplotlib.ticker import ScalarFormatter, StrMethodFormatter
 from watchsim.analysis.phases import Phase
 from watchsim.render import style
 from watchsim.render.marks import clock
-from watchsim.render.palette import looks
-from watchsim.render.phase_bands import name_key, shade
-from watchsim.render.rows import COLUMNS, bands, reduced
+from watchsim.render.palette import FAINT, looks
+from watchsim.render.phase_plots import name_key, names_in, shade, strong
+from watchsim.render.rows import COLUMNS, bands, distinct, reduced
 from watchsim.render.view import choose, dense, stretch
 from watchsim.scene.scene import Body
 from watchsim.simulation.trajectory import Array, Trajectory
@@ -51,14 +53,13 @@ class Channel:
     legend: tuple[str, ...] = ()
 
 
-ROTATION = (
-    {"angle": "°", "velocity": "°/s", "acceleration": "°/s²"},
-    # "angular acceleration" is longer than a panel is high; its unit says the same.
-    {"angle": "angle", "velocity": "angular velocity", "acceleration": "acceleration"},
+ROTATION = (  # units and names of the quantities; "angular acceleration" is longer than a panel is high, its unit says the same
+    dict(zip(QUANTITIES, ("°", "°/s", "°/s²"), strict=True)),
+    dict(zip(QUANTITIES, ("angle", "angular velocity", "acceleration"), strict=True)),
 )
 TRAVEL = (
-    {"angle": "mm", "velocity": "mm/s", "acceleration": "mm/s²"},
-    {"angle": "position", "velocity": "velocity", "acceleration": "acceleration"},
+    dict(zip(QUANTITIES, ("mm", "mm/s", "mm/s²"), strict=True)),
+    dict(zip(QUANTITIES, ("position", "velocity", "acceleration"), strict=True)),
 )
 
 
@@ -88,7 +89,11 @@ class Kinematics:
     """The panels of `plot_kinematics`, which can show one window after another: most of a plot's cost is making them."""
 
     def __init__(
-        self, run: Trajectory, bodies: Sequence[str] | None = None, quantities: Sequence[str] = USUAL, width: float = style.FULL
+        self,
+        run: Trajectory,
+        bodies: Sequence[str] | None = None,
+        quantities: Sequence[str] = USUAL,
+        width: float = style.FULL,
     ) -> None:
         self.run, self._quantities = run, _quantities(quantities)
         self._channels = [channel for body in choose(run, bodies) for channel in channels(run, body)]
@@ -113,8 +118,8 @@ class Kinematics:
         """The figure, now of this window (s), default all recorded; for `dots` only as fine as `write_png` shows it."""
         span = stretch(self.run, window)
         t, *motion = dense(self.run, span, accelerations=QUANTITIES[2] in self._quantities)
-        told = clock(span)
-        x = (t - told.base) * told.factor
+        time = clock(span)
+        x = time.at(t)
         phases = style.passing(self.run, span)
         columns = DOT_COLUMNS * round(self._panels[0, 0].bbox.width) if dots else COLUMNS
         for axes, channel, quantity in self._each():
@@ -125,10 +130,10 @@ class Kinematics:
                 _curve(axes, line, x, column, columns)
             _limits(axes, values, quantity == "angle" and channel.units is ROTATION[0])
             for beat in phases:
-                shade(axes, beat, told.base, told.factor)
+                shade(axes, beat, time.base, time.factor)
         for axes in self._panels[-1]:
-            axes.set_xlabel(told.label)
-        self._panels[-1, 0].set_xlim(*((end - told.base) * told.factor for end in span))  # which all panels share
+            axes.set_xlabel(time.label)
+        self._panels[-1, 0].set_xlim(*map(time.at, span))  # which all panels share
         style.place_panels(self.figure, self._panels, self._named(phases))
         return self.figure
 
@@ -137,14 +142,13 @@ class Kinematics:
         texts, artists = self._own
         for one in (*self.figure.texts[texts:], *self.figure.artists[artists:]):
             one.remove()
-        names = list(dict.fromkeys(phase.name for beat in phases for phase in beat if phase.name != "locked"))
+        names = names_in(phases)
         return name_key(self.figure, names, KEY) + KEY_GAP if names else KEY
 
     def _each(self) -> Iterator[tuple[Axes, Channel, str]]:
         """Every panel with what it shows."""
-        shown = ((channel, quantity) for channel in self._channels for quantity in self._quantities)
-        for axes, (channel, quantity) in zip(self._panels.flat, shown, strict=True):
-            yield axes, channel, quantity
+        for axes, shown in zip(self._panels.flat, product(self._channels, self._quantities), strict=True):
+            yield axes, *shown
 
 
 def write_png(figure: Figure, path: Path | IO[bytes]) -> None:
@@ -196,8 +200,9 @@ def _curve(axes: Axes, line: Line2D, x: Array, y: Array, columns: int) -> None:
     line.set_data(*(((), ()) if areas else reduced(x, y, columns)))
     for middle, low, high in areas:
         outline = np.column_stack((np.append(middle, middle[::-1]), np.append(low, high[::-1])))
-        look: dict[str, Any] = {"color": line.get_color(), "linewidth": line.get_linewidth(), "zorder": line.get_zorder()}
-        axes.add_artist(Polygon(outline, joinstyle="round", gid=line.get_gid(), **look))  # its limits are known
+        area = Polygon(outline, color=line.get_color(), linewidth=line.get_linewidth(), zorder=line.get_zorder())
+        area.set(joinstyle="round", gid=line.get_gid())
+        axes.add_artist(area)  # its limits are known
 
 
 def _limits(axes: Axes, values: Array, angle: bool) -> None:
@@ -214,3 +219,76 @@ def _limits(axes: Axes, values: Array, angle: bool) -> None:
         plain = ScalarFormatter(useOffset=high - low <= 1e-4 * max(abs(low), abs(high)))
         plain.set_scientific(False)
         axes.yaxis.set_major_formatter(plain)
+
+
+LEFT, RIGHT, UNDER, OVER = 16.0, 3.5, 9.0, 5.0  # mm, around a panel
+LABEL_AT = 12.8  # mm, of the label left of its panel: numbers of seven digits fit between
+TALL, TOP = 38.0, 6.5  # mm
+POINTS = 6000  # of a curve at least, for its bends
+WIDER = 1.8  # a phase against the rest of the curve
+AT_REST = 1e-3  # of a panel: a curve that is shorter both ways is drawn as a point
+STILL = 1e-4  # a range smaller than this part of the value (or of 1 unit) is not magnified: a body at rest shows no rounding
+
+
+def plot_phase_portrait(
+    run: Trajectory, bodies: Sequence[str] | None = None, window: Sequence[float] | None = None, width: float = style.FULL
+) -> Figure:
+    """Velocity over place, a panel for each moving body (at most 12 unless named).
+
+    window  (from, to) in seconds; default the last oscillation, or all of the last stretch where nothing keeps time
+
+    An impact is a vertical line, a body at rest a point. ValueError as of `plot_kinematics`.
+    """
+    cycle = style.shown(run, window)
+    span, phases = cycle.window, cycle.phases
+    chosen = choose(run, bodies)
+    shown = [channel for body in (chosen if bodies else chosen[:12]) for channel in channels(run, body)]
+    if not shown:
+        raise ValueError("nothing to plot: no body of this run moves")
+    across = min(1 if width < style.NARROW else 3, len(shown))
+    rows = -(-len(shown) // across)
+    names = names_in(phases)
+    step = OVER + TALL + UNDER
+    top = TOP + (5.0 if width >= style.NARROW else 8.0)
+    made = style.figure(width, top + rows * step)
+    style.heading(made, run.scene.title, "" if names else f"t = {span[0]:.6g} s to {span[1]:.6g} s")
+    if names:
+        name_key(made, names, TOP, lines=True)
+    t, q, u, _ = dense(run, span, POINTS)
+    worn = looks(run.scene)
+    panels = style.panels(made, width, [TALL] * len(shown), across, (LEFT, RIGHT), top + OVER, step)
+    for axes, channel in zip(panels, shown, strict=True):
+        _portrait(axes, channel, (t, q, u), phases, worn[channel.body.name].line)
+    return made
+
+
+def _portrait(axes: Axes, channel: Channel, rows: tuple[Array, Array, Array], phases: list[list[Phase]], colour: str) -> None:
+    t, q, u = rows
+    style.dress(axes)
+    style.title(axes, channel.body.name, colour)
+    axes.axhline(0.0, color=FAINT, linewidth=0.5, zorder=1)
+    lines = []
+    for k, column in enumerate(channel.columns):
+        x, y = channel.factor * q[:, column], channel.factor * u[:, column]
+        name = f"{channel.body.name} portrait{f' {channel.legend[k]}' if channel.legend else ''}"
+        lines += axes.plot(*distinct(x, y), STYLES[k], color=colour, linewidth=style.CURVE, zorder=2, gid=name)
+        for phase in (phase for beat in phases for phase in beat if phase.name != "locked"):
+            first, last = np.searchsorted(t, (phase.start, phase.end)).tolist()
+            own = slice(first, last + 1)
+            axes.plot(x[own], y[own], color=strong(phase.name), linewidth=WIDER * style.CURVE, zorder=3, solid_capstyle="butt")
+    places, speeds = (channel.factor * values[:, channel.columns] for values in (q, u))
+    axes.set_xlim(*style.with_room(float(np.nanmin(places)), float(np.nanmax(places)), 0.05, STILL, 1.0))
+    style.limits(axes, float(np.nanmin(speeds)), float(np.nanmax(speeds)), flat=STILL, unit=1.0)
+    if np.ptp(places, axis=0).max() < AT_REST * np.ptp(axes.get_xlim()) and np.ptp(speeds) < AT_REST * np.ptp(axes.get_ylim()):
+        axes.plot(places[-1], speeds[-1], "o", color=colour, markersize=3.0, zorder=4, gid=f"{channel.body.name} at rest")
+    axes.ticklabel_format(useOffset=False)
+    axes.yaxis.set_offset_position("right")  # opposite the title
+    wide = style.width_mm(axes)
+    style.spare_labels(axes.xaxis, wide / style.POINT, steps=[1, 2, 3, 4.5, 5, 9, 10])
+    style.ticks(axes.yaxis, 5)
+    axes.set_xlabel(f"{channel.names['angle']} ({channel.units['angle']})", labelpad=1.5)
+    axes.set_ylabel(f"{channel.names['velocity']} ({channel.units['velocity']})")
+    axes.yaxis.set_label_coords(-LABEL_AT / wide, 0.5, axes.transAxes)
+    axes.yaxis.label.set_verticalalignment("center")
+    if channel.legend:
+        style.key(axes, list(zip(lines, channel.legend, strict=True)), loc="best")

@@ -20,11 +20,12 @@ from watchsim.geometry.primitives import Point
 from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.model import LINE, Records
 from watchsim.render.parts import loops_of, outline
-from watchsim.render.view import Window
+from watchsim.render.view import Window, nearest
 from watchsim.scene.scene import Body, Scene
 from watchsim.simulation.state import EventKind
 from watchsim.simulation.trajectory import Array, Trajectory, frames
 from watchsim.storage.columns import blocks
+from watchsim.units import signed
 
 # An arrow begins where two bodies touch and tells the force on that one of them which comes later in the scene and can move:
 # on the lever from the wheel, on the balance from the lever. All arrows of a movie have one scale.
@@ -36,25 +37,25 @@ LEAST = 0.02  # of the longest arrow: shorter ones are dots
 
 
 class ForceArrows:
-    """Points (m) and forces (N) at the instants of a movie. ValueError where a run does not tell its forces."""
+    """Points (m) and forces (N) at the instants of a movie. ValueError where the forces of a run are not known."""
 
     def __init__(self, run: Trajectory, times: Array) -> None:
         self._at: list[tuple[Array, Array]] = []
-        order = {body.name: k for k, body in enumerate(run.scene.bodies)}
-        fixed = {body.name for body in run.scene.bodies if body.motion == "fixed"}
-        drawn = _drawn(run)
+        # Bodies in their order, fixed ones before all others.
+        rank = {body.name: -1 if body.motion == "fixed" else k for k, body in enumerate(run.scene.bodies)}
+        model = compile_scene(run.scene).model
+        body, contacts = model.primitives.body, model.contacts
+        # Not of gears with play or of a stop, which have no place.
+        drawn = np.maximum(body[contacts.a], body[contacts.b]) < len(run.scene.bodies)
         for start in range(0, len(times), AT_ONCE):
-            told = forces(run, times[start : start + AT_ONCE])
-            n, turned = told.direction, np.stack((-told.direction[..., 1], told.direction[..., 0]), axis=-1)
-            on_a = told.normal[..., None] * n + told.tangential[..., None] * turned
-            pairs = [run.pairs[number] for number in told.pairs.tolist()]
-            sign = [1.0 if _rank(one.body_a, order, fixed) > _rank(one.body_b, order, fixed) else -1.0 for one in pairs]
-            on_later = on_a * np.array(sign).reshape(1, -1, 1)
-            for points, own in zip(told.point, on_later, strict=True):
-                held = np.isfinite(points[:, 0]) & drawn[told.pairs]
+            found = forces(run, times[start : start + AT_ONCE])
+            pairs = [run.pairs[number] for number in found.pairs.tolist()]
+            sign = [1.0 if rank[one.body_a] > rank[one.body_b] else -1.0 for one in pairs]
+            on_later = found.on_a * np.array(sign).reshape(1, -1, 1)
+            for points, own in zip(found.point, on_later, strict=True):
+                held = np.isfinite(points[:, 0]) & drawn[found.pairs]
                 self._at.append((points[held], own[held]))
-        sizes = [float(np.hypot(*own.T).max()) for _, own in self._at if len(own)]
-        self.largest = max(sizes, default=0.0)
+        self.largest = max((float(np.hypot(*own.T).max()) for _, own in self._at if len(own)), default=0.0)
 
     def at(self, k: int) -> tuple[Array, Array]:
         """Points (n, 2), m, and forces (n, 2), N, of the k-th instant."""
@@ -63,21 +64,7 @@ class ForceArrows:
     @property
     def round_force(self) -> float:
         """A round force (N) of at most the largest, for the scale; 0 where nothing presses."""
-        if self.largest <= 0.0:
-            return 0.0
-        power = 10.0 ** math.floor(math.log10(self.largest))
-        return next(step * power for step in (5.0, 2.0, 1.0) if step * power <= self.largest * (1.0 + 1e-9))
-
-
-def _drawn(run: Trajectory) -> NDArray[np.bool_]:
-    """For each contact: is it between bodies of the scene, and not of gears with play or of a stop, which have no place?"""
-    model = compile_scene(run.scene).model
-    body, contacts = model.primitives.body, model.contacts
-    return np.asarray(np.maximum(body[contacts.a], body[contacts.b]) < len(run.scene.bodies))
-
-
-def _rank(name: str, order: dict[str, int], fixed: set[str]) -> int:
-    return -1 if name in fixed else order[name]
+        return round_below(self.largest) if self.largest > 0.0 else 0.0
 
 
 def arrow_path(starts: Array, ways: Array, longest: float) -> Path | None:
@@ -111,17 +98,17 @@ class ContactMarks:
     def __init__(self, run: Trajectory) -> None:
         names = [body.name for body in run.scene.bodies]
         model = compile_scene(run.scene).model
-        told = np.concatenate([_told(part) for (part,) in blocks(run.events)] or [_told(run.events)])
-        if len(told) and told["contact"].max() >= len(model.contacts):
+        changes = np.concatenate([_changes(part) for (part,) in blocks(run.events)] or [_changes(run.events)])
+        if len(changes) and changes["contact"].max() >= len(model.contacts):
             raise ValueError("contacts cannot be marked: the events of this run do not belong to its scene")
         self._history: dict[int, tuple[Array, NDArray[np.bool_]]] = {}
         self._sides: dict[int, tuple[Side, Side]] = {}
-        for k in map(int, np.unique(told["contact"])):
-            events, contact = told[told["contact"] == k], model.contacts[k]
+        for k in map(int, np.unique(changes["contact"])):
+            events, contact = changes[changes["contact"] == k], model.contacts[k]
             if max(model.primitives[contact.a].body, model.primitives[contact.b].body) >= len(names):
                 continue  # of gears with play, whose teeth are not drawn
             self._history[k] = np.array(events["t"]), events["closes"]
-            self._sides[k] = _side(model.primitives[contact.a], names), _side(model.primitives[contact.b], names)
+            self._sides[k] = Side.of(model.primitives[contact.a], names), Side.of(model.primitives[contact.b], names)
 
     def closed(self, t: float) -> list[int]:
         """The numbers of the contacts that are closed at `t` (s)."""
@@ -155,7 +142,7 @@ class ContactMarks:
         return np.array([_touch(*self._sides[k], frames) for k in self.closed(t)]).reshape(-1, 2)
 
 
-def _told(events: NDArray[Any]) -> NDArray[Any]:
+def _changes(events: NDArray[Any]) -> NDArray[Any]:
     """(t, contact, closes) of everything that closes or opens a contact; a hand-over does both."""
     kinds = (EventKind.CLOSE, EventKind.OPEN, EventKind.HANDOVER)
     rows: list[tuple[float, int, bool]] = []
@@ -177,12 +164,13 @@ class Side:
     side: float
     normal: Point | None
 
-
-def _side(primitive: Records, names: list[str]) -> Side:
-    # Outward normal of a line: the direction of travel turned by -90 degrees.
-    normal = (float(primitive.ty), -float(primitive.tx)) if primitive.kind == LINE else None
-    x, y, radius, side = (float(primitive[name]) for name in ("x", "y", "radius", "side"))
-    return Side(names[primitive.body], x, y, radius, side, normal)
+    @classmethod
+    def of(cls, primitive: Records, names: list[str]) -> Side:
+        """The side that a primitive of the model is; `names` are those of the bodies."""
+        # Outward normal of a line: the direction of travel turned by -90 degrees.
+        normal = (float(primitive.ty), -float(primitive.tx)) if primitive.kind == LINE else None
+        x, y, radius, side = (float(primitive[name]) for name in ("x", "y", "radius", "side"))
+        return cls(names[primitive.body], x, y, radius, side, normal)
 
 
 def _touch(a: Side, b: Side, frames: dict[str, Array]) -> Point:
@@ -230,20 +218,16 @@ class PalletStones:
         c, s = math.cos(angle), math.sin(angle)
         dx, dy = rest.x - x, rest.y - y
         there = np.array([c * dx + s * dy, -s * dx + c * dy])
-        return lever, min(loops_of(lever), key=lambda loop: _distance(loop, there, FINE * compiled.size))
+
+        def distance(loop: Loop) -> float:
+            return math.dist(nearest(outline([loop], FINE * compiled.size), there), there)
+
+        return lever, min(loops_of(lever), key=distance)
 
     @cached_property
     def _measured(self) -> tuple[Compiled, Function]:
         compiled = compile_scene(self._scene)
         return compiled, measure(self._scene, compiled)
-
-
-def _distance(loop: Loop, point: np.ndarray, deviation: float) -> float:
-    """Of a point from an outline, m."""
-    corners = outline([loop], deviation)
-    first, way = corners[:-1], np.diff(corners, axis=0)
-    share = np.clip(np.sum((point - first) * way, axis=1) / np.maximum(np.sum(way * way, axis=1), 1e-300), 0.0, 1.0)
-    return float(np.hypot(*(first + share[:, None] * way - point).T).min())
 
 
 ROUND = 1  # decimals of a window's length to which the time before it is given
@@ -258,10 +242,13 @@ class Clock:
     factor: float
     unit: str
 
+    def at(self, t: Any) -> Any:
+        """Times (s) in its unit, after its base."""
+        return (t - self.base) * self.factor
+
     def text(self, t: float, step: float) -> str:
         """The time, with as many digits as distinguish two instants `step` seconds apart."""
-        value = (t - self.base) * self.factor
-        number = signed(value, decimals_for(step * self.factor))
+        number = signed(self.at(t), decimals_for(step * self.factor))
         return f"{number} {self.unit}" if self.base == 0.0 else f"{self.base:.9g} s + {number} {self.unit}"
 
     @property
@@ -282,12 +269,6 @@ def clock(window: Window) -> Clock:
     decimals = ROUND - math.floor(math.log10(duration))
     base = math.floor(start * 10.0**decimals + 1e-6) / 10.0**decimals
     return Clock(base, 1e6, "µs") if duration < 1e-3 else Clock(base, 1e3, "ms")
-
-
-def signed(value: float, decimals: int) -> str:
-    """Fixed decimals, a true minus sign, and no negative zero."""
-    text = f"{value:.{decimals}f}"
-    return f"−{text[1:]}" if text.startswith("-") and float(text) != 0.0 else text.lstrip("-")
 
 
 def decimals_for(step: float) -> int:
@@ -345,28 +326,32 @@ def reading(body: Body, frames: Array, within_turn: bool = False) -> tuple[Calla
         values = 1e3 * ((frames[:, :2] - start) @ axis)
         decimals = min(decimals_for(max(float(np.ptp(values)), 1e-6)) + 2, 6)
 
-        def travel(frame: Array) -> str:
+        def text(frame: Array) -> str:
             return f"{signed(1e3 * float((frame[:2] - start) @ axis), decimals)} mm"
 
-        return travel, (f"{signed(float(values.min()), decimals)} mm", f"{signed(float(values.max()), decimals)} mm")
-    values = np.degrees(frames[:, 2])
-    decimals = 2 if float(np.ptp(values)) < 30.0 else 1
-    if within_turn:
+        unit = " mm"
+    else:
+        values, unit = np.degrees(frames[:, 2]), "°"
+        decimals = 2 if float(np.ptp(values)) < 30.0 else 1
 
-        def rest(frame: Array) -> str:
-            text = f"{math.degrees(frame[2]) % 360.0:.{decimals}f}"
-            return f"{0.0:.{decimals}f}°" if text.startswith("360") else f"{text}°"
+        def text(frame: Array) -> str:
+            if not within_turn:
+                return f"{signed(math.degrees(frame[2]), decimals)}°"
+            angle = f"{math.degrees(frame[2]) % 360.0:.{decimals}f}"
+            return f"{0.0 if angle.startswith('360') else float(angle):.{decimals}f}°"
 
-        return rest, (f"{0.0:.{decimals}f}°", f"{300.0:.{decimals}f}°")
+        if within_turn:
+            return text, (f"{0.0:.{decimals}f}°", f"{300.0:.{decimals}f}°")
+    return text, (f"{signed(float(values.min()), decimals)}{unit}", f"{signed(float(values.max()), decimals)}{unit}")
 
-    def angle(frame: Array) -> str:
-        return f"{signed(math.degrees(frame[2]), decimals)}°"
 
-    return angle, (f"{signed(float(values.min()), decimals)}°", f"{signed(float(values.max()), decimals)}°")
+def round_below(value: float) -> float:
+    """5, 2 or 1 times a power of ten, at most so much."""
+    power = 10.0 ** math.floor(math.log10(value))
+    return next(step * power for step in (5.0, 2.0, 1.0) if step * power <= value * (1.0 + 1e-9))
 
 
 def scale_bar(width: float) -> tuple[float, str]:
     """A round length (m) of at most `width` metres, and its name."""
-    power = 10.0 ** math.floor(math.log10(width))
-    length = next(step * power for step in (5.0, 2.0, 1.0) if step * power <= width * (1.0 + 1e-9))
+    length = round_below(width)
     return (length, f"{length * 1e3:g} mm") if length < 0.9999 else (length, f"{length:g} m")

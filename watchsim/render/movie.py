@@ -13,7 +13,6 @@ import math
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -45,44 +44,35 @@ from watchsim.simulation.state import EVENT_DTYPE, EventKind, Stop
 from watchsim.simulation.trajectory import Array, Trajectory, frames
 from watchsim.storage.columns import rows_where
 
-TOLD = (EventKind.IMPACT, EventKind.CLOSE, EventKind.OPEN, EventKind.JAM, EventKind.ACCUMULATION)  # slow where these happen
+LIVELY = (EventKind.IMPACT, EventKind.CLOSE, EventKind.OPEN, EventKind.JAM, EventKind.ACCUMULATION)  # slow where these happen
 AROUND = 0.004  # of the window: what is slow around an event where no phases are known
 MERGED = 2.0  # times that: quiet stretches so short are not worth a hurry
-LASTING = ("locked",)  # phases in which nothing happens
 
 
 def busy(run: Trajectory, found: list[Phase], window: Window) -> list[Window]:
     """Stretches in which things happen: from unlocking to the banking where phases are known, else around every event."""
-    lively = [(phase.start, phase.end) for phase in _lively(found, window)]
+    lively = [(one.start, one.end) for one in found if one.name != "locked" and one.end > window[0] and one.start < window[1]]
     if lively:
         longest = max(end - start for start, end in lively)
         spans = np.array([(start - 0.1 * longest, end + 0.1 * longest) for start, end in lively])
-        return list(_merged(spans, longest, window))
-    told = rows_where(
-        run.events, lambda part: np.isin(part["kind"], TOLD) & (part["t"] >= window[0]) & (part["t"] <= window[1])
+        return _merged(spans, longest, window)
+    events = rows_where(
+        run.events, lambda part: np.isin(part["kind"], LIVELY) & (part["t"] >= window[0]) & (part["t"] <= window[1])
     )
-    times = np.unique(told["t"])
+    times = np.unique(events["t"])
     around = AROUND * (window[1] - window[0])
-    return list(_merged(np.column_stack((times - around, times + around)), MERGED * around, window))
+    return _merged(np.column_stack((times - around, times + around)), MERGED * around, window)
 
 
-def _lively(found: list[Phase], window: Window) -> list[Phase]:
-    """The phases within the window in which something happens."""
-    return [one for one in found if one.name not in LASTING and one.end > window[0] and one.start < window[1]]
-
-
-def _merged(spans: Array, gap: float, window: Window) -> Iterator[Window]:
+def _merged(spans: Array, gap: float, window: Window) -> list[Window]:
     """The spans in order, united where no more than `gap` (s) lies between them, cut to the window."""
-    last: list[float] | None = None
-    for start, end in sorted(map(tuple, spans.tolist())):
-        if last is not None and start <= last[1] + gap:
-            last[1] = max(last[1], end)
-            continue
-        if last is not None:
-            yield max(last[0], window[0]), min(last[1], window[1])
-        last = [start, end]
-    if last is not None:
-        yield max(last[0], window[0]), min(last[1], window[1])
+    found: list[list[float]] = []
+    for start, end in sorted(spans.tolist()):
+        if found and start <= found[-1][1] + gap:
+            found[-1][1] = max(found[-1][1], end)
+        else:
+            found.append([start, end])
+    return [(max(start, window[0]), min(end, window[1])) for start, end in found]
 
 
 MOST_FRAMES = 1e6
@@ -191,7 +181,7 @@ class Film:
     plan: Plan
     marks: ContactMarks | None
     arrows: ForceArrows | None
-    tells_speed: bool
+    shows_speed: bool
 
     def pictures(self, numbers: NDArray[np.int64], progress: Callable[[int, int], None] | None = None) -> Iterator[Pixels]:
         """Frames of these numbers, one after the other, each in the same memory."""
@@ -210,7 +200,7 @@ class Film:
             frames,
             self.marks.points(t, frames) if self.marks else None,
             press=self.arrows.at(number) if self.arrows else None,
-            speed=float(self.plan.speeds[number]) if self.tells_speed else None,
+            speed=float(self.plan.speeds[number]) if self.shows_speed else None,
         )
 
 
@@ -222,11 +212,6 @@ def soundtrack(run: Trajectory, plan: Plan) -> Score:
         raise ValueError("sound: nothing sounds between the first and the last picture, or no impacts were kept")
     shown = np.arange(len(plan.times)) / plan.fps
     return Score(np.interp(times[heard], plan.times, shown), energies[heard], len(plan.times) / plan.fps, None)
-
-
-def write_soundtrack(place: Path, heard: Score) -> None:
-    """Write it as WAV, as long as the film."""
-    write_score(place, heard, heard.known)
 
 
 ADAPTIVE = "adaptive"  # a speed
@@ -290,12 +275,12 @@ def movie(  # noqa: PLR0913 - options, by name
     arrows = ForceArrows(run, plan.times) if forces else None
     extras = _extras(run, insets, strip, phases, arrows)
     pixels, turn = _size(run, span, extras, size, zoom, turn, gif)
-    told, step = (None if speed == ADAPTIVE else float(speed)), float(plan.speeds.min()) / plan.fps
+    steady, step = (None if speed == ADAPTIVE else float(speed)), float(plan.speeds.min()) / plan.fps
     style = DARK if dark else LIGHT
-    stage = Stage(run, pixels, span, zoom=zoom, turn=turn, speed=told, step=step, extras=extras, style=style)
+    stage = Stage(run, pixels, span, zoom=zoom, turn=turn, speed=steady, step=step, extras=extras, style=style)
     film = Film(stage, run, plan, ContactMarks(run) if contacts else None, arrows, speed == ADAPTIVE)
-    palette = _palette(film, plan, style.phases.values() if phases else ()) if gif else None
-    write = None if heard is None else partial(write_soundtrack, heard=heard)
+    palette = _palette(film.pictures, len(plan.times), style.phases.values() if phases else ()) if gif else None
+    write = None if heard is None else (lambda place: write_score(place, heard, heard.known))
     encode(film.pictures(np.arange(len(plan.times)), progress), target, pixels, plan.fps, palette, write)
     return target
 
@@ -364,10 +349,10 @@ def _size(
     return even_sides(size if size is not None else (GIF_SIZE if gif else MP4_SIZE)), turn
 
 
-def _palette(film: Film, plan: Plan, named: Iterable[str]) -> Palette:
-    """The colours of some frames, and these `named` ones exactly."""
-    sampled = np.unique(np.linspace(0, len(plan.times) - 1, SAMPLES).astype(int))
-    return shared_palette([picture.copy() for picture in film.pictures(sampled)], named)
+def _palette(pictures: Callable[[NDArray[np.int64]], Iterator[Pixels]], count: int, named: Iterable[str] = ()) -> Palette:
+    """The colours of some of so many frames, and these `named` ones exactly."""
+    sampled = np.unique(np.linspace(0, count - 1, SAMPLES).astype(int))
+    return shared_palette([picture.copy() for picture in pictures(sampled)], named)
 
 
 def _extras(run: Trajectory, insets: Sequence[str], strip: str | bool, phases: bool, arrows: ForceArrows | None) -> Extras:
@@ -396,13 +381,23 @@ def turn_movie(found: Turn, path: str | os.PathLike[str], dark: bool = False) ->
     gif = target.suffix.lower() == ".gif"
     size, fps = (GIF_SIZE, GIF_FPS) if gif else (MP4_SIZE, FPS)
     rows, source = _frames(found)
-    run = _as_run(found, rows)
+    # The frames as a run of one second each, for those who frame and draw runs.
+    columns = [number for number, body in enumerate(found.scene.bodies) if body.motion != "fixed"]
+    slices = {found.names[number]: slice(k, k + 1) for k, number in enumerate(columns)}
+    q = rows[:, columns]
+    rest, no_events = np.zeros_like(q), np.zeros(0, EVENT_DTYPE)
+    run = Trajectory(found.scene, np.arange(len(q), dtype=float), q, rest, rest, slices, no_events, (), Stop.DURATION)
     stage = Stage(run, size, (0.0, float(run.t[-1])), clock=ByHand(0.0, 1.0, ""), style=DARK if dark else LIGHT)
-    palette = None
-    if gif:
-        some = np.unique(np.linspace(0, len(rows) - 1, 12).astype(int))
-        palette = shared_palette([picture.copy() for picture in _pictures(stage, run, rows[some], source[some], found)])
-    encode(_pictures(stage, run, rows, source, found), target, size, fps, palette)
+
+    def pictures(numbers: NDArray[np.int64]) -> Iterator[Pixels]:
+        where = frames(found.scene, slices, q[numbers])
+        for k, row in enumerate(source[numbers].tolist()):
+            touches = found.cycle.touches[row] if row >= 0 else ()
+            marks = np.array([touch.place for touch in touches]).reshape(-1, 2)
+            yield stage.draw(float(k), {name: poses[k] for name, poses in where.items()}, marks)
+
+    palette = _palette(pictures, len(rows)) if gif else None
+    encode(pictures(np.arange(len(rows))), target, size, fps, palette)
     return target
 
 
@@ -426,22 +421,3 @@ def _frames(found: Turn) -> tuple[Array, NDArray[np.int64]]:
         out.append(q[row])
         source.append(row)
     return np.array(out), np.array(source)
-
-
-def _as_run(found: Turn, rows: Array) -> Trajectory:
-    """The frames as a run of one second each, for those who frame and draw runs."""
-    columns = [number for number, body in enumerate(found.scene.bodies) if body.motion != "fixed"]
-    slices = {found.names[number]: slice(k, k + 1) for k, number in enumerate(columns)}
-    q = rows[:, columns]
-    t = np.arange(len(q), dtype=float)
-    rest = np.zeros_like(q)
-    return Trajectory(found.scene, t, q, rest, rest, slices, np.zeros(0, EVENT_DTYPE), (), Stop.DURATION)
-
-
-def _pictures(stage: Stage, run: Trajectory, rows: Array, source: NDArray[np.int64], found: Turn) -> Iterator[Pixels]:
-    columns = [number for number, body in enumerate(found.scene.bodies) if body.motion != "fixed"]
-    where = frames(found.scene, run.slices, rows[:, columns])
-    for k in range(len(rows)):
-        touches = found.cycle.touches[source[k]] if source[k] >= 0 else ()
-        marks = np.array([touch.place for touch in touches]).reshape(-1, 2)
-        yield stage.draw(float(k), {name: poses[k] for name, poses in where.items()}, marks)

@@ -1,6 +1,6 @@
 """Which colours do parts wear, and in which is a picture drawn besides, on light or on dark ground?
 
-Watchmaking has its own: brass wheels, grey steel levers, ruby stones. The words of layers and bodies tell which. Parts that
+Watchmaking has its own: brass wheels, grey steel levers, ruby stones. The words of layers and bodies say which. Parts that
 never move have a colour of their own, whatever they are called.
 """
 
@@ -84,14 +84,14 @@ _LAYERS = (
 def looks(scene: Scene) -> dict[str, Finish]:
     """What stands for every body in pictures, read-outs and plots; no two moving bodies alike while there are enough.
 
-    Bodies whose words tell of one come first; the others take what is left.
+    Bodies whose words name one come first; the others take what is left.
     """
-    told = {body.name: _told(body) for body in scene.bodies}
+    named = {body.name: _by_words(body) for body in scene.bodies}
     found: dict[str, Finish] = {body.name: FIXED for body in scene.bodies if body.motion == "fixed"}
-    moving = sorted((body for body in scene.bodies if body.motion != "fixed"), key=lambda body: told[body.name] is None)
+    moving = sorted((body for body in scene.bodies if body.motion != "fixed"), key=lambda body: named[body.name] is None)
     used: list[Finish] = []
     for rank, body in enumerate(moving):
-        own = told[body.name]
+        own = named[body.name]
         choices = OTHERS if own is None else (own, *OTHERS)
         used.append(next((look for look in choices if look not in used), choices[rank % len(choices)]))
         found[body.name] = used[-1]
@@ -109,7 +109,7 @@ def finish(body: Body, layer: str, look: Finish) -> Finish:
         return look
     own = _of_layer(name, sheet)
     if own is not None and len(body.layers) == 1:
-        own = look  # told from this layer; another where a body wears that already, so that pictures and legends agree
+        own = look  # chosen by this layer; another where a body wears that already, so that pictures and legends agree
     if body.layers and layer not in body.layers and any(loop.layer == layer for loop in body.decoration):
         if own is None:
             # Of a body of which only stones can touch, the rest is no stone.
@@ -134,7 +134,7 @@ def mixed(colour: str, ground: str, share: float) -> str:
     return "#" + "".join(f"{round(a + share * (b - a)):02x}" for a, b in zip(own, other, strict=True))
 
 
-def _told(body: Body) -> Finish | None:
+def _by_words(body: Body) -> Finish | None:
     """What the words say of a body: its only layer if that has a finish of its own, else its name, else its layers."""
     if len(body.layers) == 1 and (own := _of_layer(body.name.lower(), body.layers[0].lower())) is not None:
         return own

@@ -16,9 +16,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backend_bases import GraphicsContextBase, RendererBase
 from matplotlib.colors import to_rgba
+from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path
-from matplotlib.transforms import Affine2D
+from matplotlib.transforms import Affine2D, Bbox
 from numpy.typing import NDArray
 
 from watchsim.contact.cell_frames import chords
@@ -47,6 +48,12 @@ class LastingPatch(PathPatch):
 
     _context: GraphicsContextBase | None = None
     _face: Any = None
+
+    def drawn_on(self, figure: Figure, room: Bbox) -> LastingPatch:
+        """The patch, as one of a figure, and only within `room` (pixels)."""
+        self.set_figure(figure)
+        self.set_clip_box(room)
+        return self
 
     def draw(self, renderer: RendererBase) -> None:
         """Draw it with the look that it had when it was first drawn."""

@@ -14,7 +14,7 @@ import numpy as np
 from matplotlib.backend_bases import RendererBase
 from matplotlib.figure import Figure
 from matplotlib.path import Path
-from matplotlib.transforms import Affine2D, Bbox, IdentityTransform, Transform
+from matplotlib.transforms import Affine2D, IdentityTransform, Transform
 
 from watchsim.render.palette import BLUED, FIXED, PALE_PICTURE_STYLE, Style, mixed
 from watchsim.render.parts import (
@@ -245,10 +245,7 @@ class Mechanism:
 
     def own(self, patch: LastingPatch) -> LastingPatch:
         """The patch, drawn on this figure and only between the bands of words."""
-        room = self._room
-        patch.set_figure(self._figure)
-        patch.set_clip_box(Bbox.from_bounds(room.left, room.bottom, room.width, room.height))
-        return patch
+        return patch.drawn_on(self._figure, self._room.box)
 
     def _compose(self) -> list[LastingPatch]:
         """Patches to draw in every frame, in order; those that never move go to the figure itself."""
@@ -262,8 +259,7 @@ class Mechanism:
         unmoved: list[LastingPatch] = []
         for part in shapes:
             if part.body in still:
-                fixed = Affine2D(self._view.matrix(self._view.centre) @ pose_matrix(frames[part.body]))
-                unmoved += self._of_part(part, fixed)
+                unmoved += self._of_part(part, self._fixed(frames[part.body]))
         moving = [part for part in shapes if part.body not in still]
         behind = backdrop(moving)
         for part in behind:
@@ -279,6 +275,10 @@ class Mechanism:
         live += [self._spoke(name) for name in self._transforms if is_round(self._scene.body(name))]
         live += self._pivots()
         return live
+
+    def _fixed(self, frame: Array) -> Affine2D:
+        """Where a body with that pose stands in a picture that does not move."""
+        return Affine2D(self._view.matrix(self._view.centre) @ pose_matrix(frame))
 
     def _of_part(self, part: Part, transform: Transform) -> list[LastingPatch]:
         look = self._style.worn(part.finish)
@@ -298,8 +298,8 @@ class Mechanism:
             if number >= len(self._scene.bodies):
                 continue  # the rack of a gear or a stop, which is nowhere
             body = self._scene.bodies[number]
-            place = Affine2D(self._view.matrix(self._view.centre) @ pose_matrix(np.array([*body.position, body.angle])))
-            made.append(self.own(LastingPatch(path, transform=self._transforms.get(body.name, place), **look)))
+            place = self._transforms.get(body.name) or self._fixed(np.array([*body.position, body.angle]))
+            made.append(self.own(LastingPatch(path, transform=place, **look)))
         return made
 
     def _shadow(self, part: Part) -> LastingPatch:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 from bisect import bisect_right
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -23,7 +23,7 @@ from watchsim.analysis.phases import Phase
 from watchsim.geometry.primitives import Point
 from watchsim.mechanism.check import ModelledPairs
 from watchsim.mechanism.compile import Compiled
-from watchsim.render.insets import InsetPicture, Strip, beside, insets
+from watchsim.render.insets import InsetPicture, Marks, Strip, beside, insets
 from watchsim.render.marks import Clock, arrow_path, changing_speed_text, turn_text
 from watchsim.render.palette import DARK, FAULT, LIGHT, Style
 from watchsim.render.parts import Edges, LastingPatch, loops_of
@@ -58,26 +58,17 @@ class Extras:
         return self.phases[k].name if k >= 0 and t < self.phases[k].end else ""
 
 
-NOTHING = Extras()
 STRIP_WIDE, STRIP_TALL = 0.27, 0.2  # share of a wide and of a tall picture's height that the strip takes
 ARROW = 0.15  # of the smaller side of the room: the longest arrow
-
-
 LEAST = 60.0  # pixels of height that must be left for the mechanism
 PAD = 24.0  # pixels at 1280 × 720
 
 
-@dataclass(frozen=True)
-class Shared:
-    """Who has which room (pixels): the mechanism, the strip below it, the insets."""
+def shared_room(frame: Frame, extras: Extras, height: float) -> tuple[Frame, Frame | None, tuple[Frame, ...]]:
+    """Who has which room (pixels) of the frame between the bands of words: the mechanism, the strip below it, the insets.
 
-    room: Frame
-    strip: Frame | None
-    insets: tuple[Frame, ...]
-
-
-def shared_room(frame: Frame, extras: Extras, height: float) -> Shared:
-    """How the frame between the bands of words of a picture of that height is shared out."""
+    `height` is that of the picture.
+    """
     room, below = frame, None
     if extras.strip is not None:
         taken = (STRIP_WIDE if frame.width >= frame.height else STRIP_TALL) * height
@@ -86,7 +77,7 @@ def shared_room(frame: Frame, extras: Extras, height: float) -> Shared:
         if room.height < LEAST:
             raise ValueError("no room is left for the mechanism above its strip; choose a larger picture, or no strip")
     room, boxes = beside(room, len(extras.insets))
-    return Shared(room, below, boxes)
+    return room, below, boxes
 
 
 class Beside:
@@ -111,10 +102,9 @@ class Beside:
         self._words, self._faint = Words(size, style.ink, style.background), Words(size, style.faint, style.background)
         self._bold = Words(size, style.ink, style.background, "bold")
         self._frame, self._strip, self._turn = frame, None, 0.0
-        shared = shared_room(frame, extras, figure.bbox.height)
-        if shared.strip is not None and extras.strip is not None:
-            self._strip = Strip(run, window, shared.strip, extras.strip, extras.phases, size, style)
-        self.room, self._boxes = shared.room, shared.insets
+        self.room, below, self._boxes = shared_room(frame, extras, figure.bbox.height)
+        if below is not None and extras.strip is not None:
+            self._strip = Strip(run, window, below, extras.strip, extras.phases, size, style)
         self._longest = ARROW * min(self.room.width, self.room.height)
         self._insets: list[InsetPicture] = []
 
@@ -133,21 +123,13 @@ class Beside:
         path = arrow_path(seen(points, matrix), ways, self._longest)
         return [] if path is None else [self._arrow(path)]
 
-    def draw(
-        self,
-        renderer: Any,
-        t: float,
-        frames: dict[str, Array],
-        matrix: Array,
-        marks: Callable[[Array], list[LastingPatch]],
-        out_pixels: Pixels,
-    ) -> None:
+    def draw(self, renderer: Any, t: float, frames: dict[str, Array], matrix: Array, marks: Marks, out_pixels: Pixels) -> None:
         """Draw everything for the poses of the instant `t`, in a picture whose map from metres is `matrix`."""
         for picture in self._insets:
             picture.place_in(matrix, frames, self.room).draw(renderer)
         for picture in self._insets:
             picture.draw(renderer, frames, marks, out_pixels)
-        self._key(renderer, out_pixels)
+        self._draw_key(renderer, out_pixels)
         if self._extras.phases:
             self._name_phase(self._extras.phase_at(t), out_pixels)
         if self._strip is not None:
@@ -164,14 +146,14 @@ class Beside:
             left += round(1.3 * size)
         self._bold.write(name, left, base, out_pixels)
 
-    def tell_speed(self, speed: float, frame: Frame, out_pixels: Pixels) -> None:
+    def write_speed(self, speed: float, frame: Frame, out_pixels: Pixels) -> None:
         """Write the speed of this frame where a steady one would stand."""
         turned = turn_text(self._turn)
         text = changing_speed_text(speed) + (f", {turned}" if turned else "")
         right, base = frame.left + frame.width - PAD * self._unit, frame.bottom + frame.height + 0.3 * self._faint.size
         self._faint.write(text, right, base, out_pixels, right=True)
 
-    def _key(self, renderer: Any, out_pixels: Pixels) -> None:
+    def _draw_key(self, renderer: Any, out_pixels: Pixels) -> None:
         """An arrow of a round force with its size, at the lower left of the mechanism."""
         if self._extras.scale <= 0.0:
             return
@@ -195,7 +177,7 @@ DPI = 72.0  # one point is one pixel
 class Stage:
     """Draws a run at any instant of a window, always in the same frame.
 
-    `size` is (width, height) in pixels; `speed` and `step` (s between frames) are only told, not used. `picked` edges are
+    `size` is (width, height) in pixels; `speed` and `step` (s between frames) are only shown, not used. `picked` edges are
     drawn over everything, with a key below the title. With `extras` the mechanism leaves room for them.
     `clock` reports something other than the time of the run, `style` is light or dark.
     """
@@ -211,7 +193,7 @@ class Stage:
         speed: float | None = None,
         step: float | None = None,
         picked: Sequence[Edges] = (),
-        extras: Extras = NOTHING,
+        extras: Extras = Extras(),
         clock: Clock | None = None,
         style: Style = LIGHT,
     ) -> None:
@@ -219,11 +201,9 @@ class Stage:
         self._figure = Figure(figsize=((size[0] + 0.5) / DPI, (size[1] + 0.5) / DPI), dpi=DPI, facecolor=style.background)
         self._canvas = FigureCanvasAgg(self._figure)
         self._unit = relative_size(*size)
-        self._layout = lay_out(self._figure, run, window, step or (window[1] - window[0]) / 2000.0, style)
-        if clock is not None:
-            self._layout = replace(self._layout, clock=clock)
-        size_of_text = self._layout.small.size
-        self._beside = Beside(self._figure, run, window, extras, self._layout.frame, size_of_text, self._unit, style)
+        layout = lay_out(self._figure, run, window, step or (window[1] - window[0]) / 2000.0, style)
+        self._layout = layout if clock is None else replace(layout, clock=clock)
+        self._beside = Beside(self._figure, run, window, extras, layout.frame, layout.small.size, self._unit, style)
         room = self._beside.room
         self.view = view(run, window, room, zoom, turn)
         self._beside.look_at(self.view)
@@ -249,7 +229,7 @@ class Stage:
         """The picture (height, width, 4) of the instant `t`; the next call overwrites it.
 
         `frames` gives every body's pose x, y, angle; `contacts` (n, 2) points to mark, in metres, in the colour `mark`
-        (default: that of contacts); `press` points (n, 2), m, and the forces there (n, 2), N; `speed` is told where it
+        (default: that of contacts); `press` points (n, 2), m, and the forces there (n, 2), N; `speed` is given where it
         changes from frame to frame.
         """
         self._canvas.restore_region(self._background)
@@ -268,7 +248,7 @@ class Stage:
         pixels = np.asarray(self._canvas.buffer_rgba())
         self._beside.draw(renderer, t, frames, matrix, touching, pixels)
         if speed is not None:
-            self._beside.tell_speed(speed, self._layout.frame, pixels)
+            self._beside.write_speed(speed, self._layout.frame, pixels)
         self._layout.write(t, frames, pixels)
         return pixels
 

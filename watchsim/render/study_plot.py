@@ -54,12 +54,9 @@ def plot_sweep(sweep: Sweep, width: float = style.FULL) -> Figure:
         axes.ticklabel_format(useOffset=False)
     panels[-1].set_xlabel(axis_label(along))
     if other is not None and field is None:
-        handles, labels = panels[0].get_legend_handles_labels()
         look: dict[str, Any] = {"frameon": False, "fontsize": style.SMALL, "title_fontsize": style.SMALL, "labelcolor": INK}
-        where: dict[str, Any] = (
-            {"loc": "outside right upper"} if width >= style.NARROW else {"loc": "outside lower left", "ncols": 3}
-        )
-        made.legend(handles, labels, title=axis_label(other), **look, **where)
+        look |= {"loc": "outside right upper"} if width >= style.NARROW else {"loc": "outside lower left", "ncols": 3}
+        made.legend(*panels[0].get_legend_handles_labels(), title=axis_label(other), **look)
     return made
 
 
@@ -137,8 +134,7 @@ def _failures(axes: Axes, rows: Sequence[Any], along: Axis, colour: str) -> None
         x, verdict = usual_value(along, row[along.key]), row["verdict"] or "no result"
         axes.plot([x], [0.04], marker="x", color=colour, markersize=3.5, transform=edge, clip_on=False, linestyle="none")
         if verdict not in named:
-            thin: dict[str, Any] = {"color": style.BAD, "fontsize": style.SMALL, "ha": "center", "va": "bottom"}
-            axes.text(x, 0.09, verdict, transform=edge, **thin)
+            style.words(axes, x, 0.09, verdict, transform=edge, color=style.BAD, ha="center", va="bottom")
             named.add(verdict)
 
 
@@ -159,7 +155,7 @@ def _map(figure: Figure, axes: Axes, sweep: Sweep, along: Axis, other: Axis, out
     axes.set_ylabel(axis_label(other))
 
 
-MOST = 30  # bars in a panel
+MOST_BARS = 30  # bars in a panel
 BAR, AROUND_BARS = 4.2, 18.0  # mm, of a bar and of all around the bars
 WORDS = 10.0  # mm, beside a bar
 LETTERS, LEAST_WIDE = 1.15, 30.0  # mm, of a letter of the names; of a panel at least
@@ -173,7 +169,7 @@ def plot_sensitivity(found: Sensitivity, width: float = style.FULL) -> Figure:
 
     A bar is the effect of 1 % more, of 10 µm or of 0.1°. What two step sizes disagree about is hatched.
     """
-    shown = [effect for effect in found.effects if _matters(found, effect)][:MOST]
+    shown = [effect for effect in found.effects if _matters(found, effect)][:MOST_BARS]
     across = len(found.outputs) if width >= style.NARROW else 1
     rows = -(-len(found.outputs) // across)
     made = style.figure(width, rows * (BAR * max(len(shown), 2) + AROUND_BARS), layout="constrained")
@@ -192,24 +188,19 @@ def plot_sensitivity(found: Sensitivity, width: float = style.FULL) -> Figure:
 
 def _matters(found: Sensitivity, effect: Effect) -> bool:
     """Does it move any output by more than a trace?"""
-    for one in found.outputs:
-        longest = max((_length(other, one) for other in found.effects), default=0.0)
-        if longest > 0.0 and _length(effect, one) > LEAST * longest:
-            return True
-    return False
 
+    def length(one: Effect, output: Output) -> float:
+        return abs(one.of(output.column, one.quantity.change) or 0.0)
 
-def _length(effect: Effect, output: Output) -> float:
-    return abs(effect.of(output.column, effect.quantity.change) or 0.0)
+    return any(length(effect, one) > LEAST * max(length(other, one) for other in found.effects) for one in found.outputs)
 
 
 def _bars(axes: Axes, shown: list[Effect], output: Output, wide: float) -> None:
     style.dress(axes, grid="x")
     values = [effect.of(output.column, effect.quantity.change) or 0.0 for effect in shown]
     hatches = ["" if effect.by[output.column].agrees else "////" for effect in shown]
-    bars = axes.barh(
-        range(len(shown)), values, height=0.68, color=[style.GOOD if value > 0.0 else style.BAD for value in values]
-    )
+    colours = [style.GOOD if value > 0.0 else style.BAD for value in values]
+    bars = axes.barh(range(len(shown)), values, height=0.68, color=colours)
     longest = max((abs(value) for value in values), default=0.0) or 1.0
     for bar, value, hatch in zip(bars, values, hatches, strict=True):
         bar.set_hatch(hatch)
@@ -217,18 +208,14 @@ def _bars(axes: Axes, shown: list[Effect], output: Output, wide: float) -> None:
             continue
         side = 1.0 if value >= 0.0 else -1.0
         place = (value + 0.02 * side * longest, bar.get_y() + 0.5 * bar.get_height())
-        text = style.minus(f"{value:+.3g}")
-        axes.text(*place, text, va="center", ha="left" if side > 0 else "right", fontsize=style.SMALL, color=INK)
+        text, beside = style.minus(f"{value:+.3g}"), "left" if side > 0 else "right"
+        style.words(axes, *place, text, transform=axes.transData, va="center", ha=beside)
     room = longest * wide / max(wide - 2.0 * WORDS, 0.2 * wide)
     axes.set_xlim(-room, room)
     style.ticks(axes.xaxis, 4)
     axes.axvline(0.0, color=FAINT, linewidth=style.HAIR)
-    axes.set_title(
-        f"change of {output_label(output)}" if output.unit else output.label,
-        fontsize=style.LABEL,
-        loc="left",
-        color=INK,
-    )
+    title = f"change of {output_label(output)}" if output.unit else output.label
+    axes.set_title(title, fontsize=style.LABEL, loc="left", color=INK)
     axes.spines["left"].set_visible(False)
     axes.tick_params(left=False)
 
@@ -240,9 +227,7 @@ ENGINES = {  # name in print, colour and mark
     "box2d": ("Box2D", SERIES[3], "v"),
     "mujoco": ("MuJoCo", SERIES[2], "D"),
 }
-AXES = (("error_state", "error of the place after 3 s (m)"), ("error_amplitude_deg", "error of the amplitude (°)"))
-SPEED_ACROSS = 3  # panels beside each other
-SPEED_TALL = 62.0  # mm, a row of panels
+SPEED_ACROSS, SPEED_TALL = 3, 62.0  # panels beside each other; mm, of a row of them
 EXACT = 1e-14  # what comes out exactly is drawn here
 
 
@@ -267,7 +252,8 @@ def plot_speed(rows: Sequence[Mapping[str, Any]], path: Path) -> None:
 
 
 def _speeds(axes: Axes, scene: str, rows: Sequence[Mapping[str, Any]]) -> None:
-    name, label = next(axis for axis in AXES if any(row[axis[0]] is not None for row in rows))
+    axis = {"error_state": "error of the place after 3 s (m)", "error_amplitude_deg": "error of the amplitude (°)"}
+    name = next(name for name in axis if any(row[name] is not None for row in rows))
     for method in dict.fromkeys(row["method"] for row in rows):
         points = [row for row in rows if row["method"] == method and row[name] is not None and not row["note"]]
         x = [max(row[name], EXACT) for row in points]
@@ -280,5 +266,5 @@ def _speeds(axes: Axes, scene: str, rows: Sequence[Mapping[str, Any]]) -> None:
     axes.set_xscale("log")
     axes.set_yscale("log")
     style.title(axes, scene)
-    axes.set_xlabel(label)
+    axes.set_xlabel(axis[name])
     style.dress(axes)

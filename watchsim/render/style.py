@@ -88,6 +88,29 @@ def panel(figure: Figure, left: float, top: float, width: float, height: float) 
     return figure.add_axes((left / wide, 1.0 - (top + height) / high, width / wide, height / high))
 
 
+def panels(
+    figure: Figure, width: float, heights: Sequence[float], across: int, sides: tuple[float, float], top: float, step: float
+) -> list[Axes]:
+    """Panels of these heights, so many beside each other in a figure of that width; all in mm.
+
+    `sides` is the room left and right of each; their rows begin at `top`, each `step` below the one before.
+    """
+    left, right = sides
+    wide = width / across - left - right
+    places = ((k % across * (left + wide + right) + left, top + k // across * step) for k in range(len(heights)))
+    return [panel(figure, *place, wide, high) for place, high in zip(places, heights, strict=True)]
+
+
+def words(axes: Axes, x: float, y: float, text: str, **look: Any) -> None:
+    """Small letters at a place in shares of a panel."""
+    axes.text(x, y, text, **{"fontsize": SMALL, "color": INK, "transform": axes.transAxes, **look})
+
+
+def note(axes: Axes, text: str, place: tuple[float, float], away: tuple[float, float], **look: Any) -> None:
+    """Small letters beside a place of the data, so many points away."""
+    axes.annotate(text, place, away, textcoords="offset points", **{"fontsize": SMALL, "color": INK, **look})
+
+
 def heading(figure: Figure, title: str, words: str = "") -> None:
     """A title and a line below it, at the upper left; what does not fit is cut."""
     wide, high = size_mm(figure)
@@ -174,13 +197,19 @@ def save(figure: Figure, path: Path | str) -> None:
     Path(path).write_bytes(made.getvalue())
 
 
-UNITS = ((1e9, "nJ"), (1e6, "µJ"), (1e3, "mJ"), (1.0, "J"))
-MOST = 1e4  # in that unit
-
-
 def energy_unit(largest: float) -> tuple[float, str]:
     """How many to the joule, and the unit's name, such that `largest` (J) has at most four digits before its point."""
-    return next((one for one in UNITS if abs(largest) * one[0] < MOST), UNITS[-1])
+    units = ((1e9, "nJ"), (1e6, "µJ"), (1e3, "mJ"), (1.0, "J"))
+    return next((one for one in units if abs(largest) * one[0] < 1e4), units[-1])
+
+
+PREFIXES = ((1.0, ""), (1e3, "m"), (1e6, "µ"), (1e9, "n"))
+
+
+def scaled_unit(largest: float, unit: str, otherwise: int = -1) -> tuple[float, str]:
+    """How many to the unit, and their name, such that `largest` is one or more, or those of prefix number `otherwise`."""
+    factor, prefix = next((one for one in PREFIXES if largest * one[0] >= 1.0), PREFIXES[otherwise])
+    return factor, prefix + unit
 
 
 SCREEN = 134  # dots per inch: a page's width is 900 dots, in which letters of 6 pt can be read
@@ -188,7 +217,7 @@ COLOURS = 32  # of a small picture: a palette makes it small
 
 
 class ShownFigure(Figure):
-    """A figure that notebooks show as a picture, whether or not they have been told about matplotlib."""
+    """A figure that notebooks show as a picture, whether or not they know matplotlib."""
 
     def _repr_png_(self) -> bytes:
         out = io.BytesIO()
@@ -313,11 +342,11 @@ def one_cycle(run: Trajectory) -> Shown:
     hertz = frequency(run.scene) if keeps_time(run.scene) else None
     if not hertz:
         return Shown((start, end), [])
-    told = passing(run, (max(start, end - SEARCHED / hertz), end))
-    whole = [beat for beat in told if beat[0].name in BEGINNING and beat[-1].name in RESTING][-2:]
+    found = passing(run, (max(start, end - SEARCHED / hertz), end))
+    whole = [beat for beat in found if beat[0].name in BEGINNING and beat[-1].name in RESTING][-2:]
     if len(whole) == 2:
         return Shown((whole[0][0].start, whole[1][-1].end), whole)
-    return Shown((max(start, end - LONGER / hertz), end), told)
+    return Shown((max(start, end - LONGER / hertz), end), found)
 
 
 def shown(run: Trajectory, window: Sequence[float] | None) -> Shown:

@@ -21,7 +21,6 @@ from watchsim.analysis.verdict_kinds import BESIDE
 from watchsim.render import style
 from watchsim.render.palette import FAINT
 from watchsim.render.rows import reduced
-from watchsim.render.style import SERIES
 from watchsim.simulation.trajectory import Array, Trajectory
 
 LEFT, FOOT = 14.0, 8.0  # mm
@@ -64,8 +63,7 @@ def plot_timing(run: Trajectory, window: Sequence[float] | None = None, width: f
         axes.yaxis.set_label_coords(-LABEL_AT / wide, 0.5)
         _room(axes, values[inside], least)
         if axes is panels[0]:
-            where: dict[str, Any] = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "ncols": 2, "borderaxespad": 0.0}
-            style.key(axes, handles, markerscale=KEY_DOT / size, **where)
+            _key(axes, handles, "left", KEY_DOT / size)
     _over_time(panels, found.t[inside], found.nominal_period)
     return made
 
@@ -73,14 +71,12 @@ def plot_timing(run: Trajectory, window: Sequence[float] | None = None, width: f
 def _swings(
     axes: Axes, found: Beats, inside: NDArray[np.int64], values: Array, name: str, size: float
 ) -> list[tuple[Any, str]]:
-    """A dot for each half swing, in the colour and shape of its direction; of many those that differ on paper."""
+    """A dot for each half swing, in the colour and shape of its direction."""
     handles = []
-    forward = found.end_at > found.start_at
-    directions = ((True, SERIES[0], "o", "forward", BIGGER), (False, SERIES[1], "s", "back", 1.0))
-    for way, colour, mark, label, bigger in directions:
-        own = inside[forward[inside] == way]
-        x, y = reduced(found.t[own], values[own], COLUMNS)
-        handles.append((_dots(axes, x, y, mark, colour, bigger * size, f"{name} {label}"), label))
+    forward = (found.end_at > found.start_at)[inside]
+    for way, number, mark, label, bigger in ((forward, 0, "o", "forward", BIGGER), (~forward, 1, "s", "back", 1.0)):
+        own = inside[way]
+        handles.append((_dots(axes, found.t[own], values[own], mark, number, bigger * size, f"{name} {label}"), label))
     return handles
 
 
@@ -121,13 +117,13 @@ def tape_figure(shown: Tape, title: str, about: str, inside: slice = slice(None)
     size = _dot(len(t))
     _paper(panels[0], shown, inside, size)
     for axes, (label, values, least) in zip(panels[1:], rows, strict=True):
-        _dots(axes, *reduced(t, values[inside], COLUMNS), "o", SERIES[0], size, label, "true")
+        _dots(axes, t, values[inside], "o", 0, size, label, "true")
         axes.set_ylabel(label)
         _room(axes, values[inside], least)
     if np.isfinite(read).any():
-        _dots(panels[2], *reduced(t, read, COLUMNS), "s", SERIES[4], size, "amplitude shown", "by lift angle")
+        _dots(panels[2], t, read, "s", 4, size, "amplitude shown", "by lift angle")
         _room(panels[2], np.concatenate([shown.amplitude_deg[inside], read]), 1.0)
-        _legend(panels[2])
+        _key(panels[2], list(zip(*panels[2].get_legend_handles_labels(), strict=True)), "right", 1.8)
     _over_time(panels, t, shown.nominal_period)
     return made
 
@@ -141,12 +137,11 @@ def _paper(axes: Axes, shown: Tape, inside: slice, size: float) -> None:
         gain = np.mod(gain + 0.5 * PAPER, PAPER) - 0.5 * PAPER
         low, high, side, words = -0.5 * PAPER, 0.5 * PAPER, 0.0, f"{PAPER:g} ms wide, wrapped round"
     axes.set_ylim(low - side, high + side)
-    for way, colour, mark, label in ((True, SERIES[0], "o", "tick"), (False, SERIES[1], "s", "tock")):
-        x, y = reduced(t[forward == way], gain[forward == way], COLUMNS)
-        _dots(axes, x, y, mark, colour, size, label, label)
+    for way, number, mark, label in ((forward, 0, "o", "tick"), (~forward, 1, "s", "tock")):
+        _dots(axes, t[way], gain[way], mark, number, size, label, label)
     axes.set_ylabel("gain (ms)")
     axes.set_title(words, loc="left", fontsize=style.SMALL, color=FAINT, y=1.0, pad=3.0)
-    _legend(axes)
+    _key(axes, list(zip(*axes.get_legend_handles_labels(), strict=True)), "right", 1.8)
     _guides(axes, float(t[0]), float(t[-1]))
 
 
@@ -159,8 +154,7 @@ def _guides(axes: Axes, start: float, end: float) -> None:
         rise = 1e3 * rate / 86400.0 * (end - start)
         axes.plot([start, end], [middle, middle + rise], "--", color=FAINT, linewidth=style.HAIR, zorder=0)
         text = style.minus(f"{rate:+g} s/d") if rate else "0 s/d"
-        look: dict[str, Any] = {"va": "center", "fontsize": style.SMALL, "color": FAINT, "annotation_clip": False}
-        axes.annotate(text, (end, middle + rise), (3, 0), textcoords="offset points", **look)
+        style.note(axes, text, (end, middle + rise), (3, 0), va="center", color=FAINT, annotation_clip=False)
 
 
 def _beside(run: Trajectory) -> str:
@@ -174,8 +168,10 @@ def _dot(count: int) -> float:
     return 2.6 if count < 150 else 1.8 if count < 1000 else 1.2
 
 
-def _dots(axes: Axes, x: Array, y: Array, mark: str, colour: str, size: float, gid: str, label: str | None = None) -> Any:
-    return axes.plot(x, y, mark, color=colour, markersize=size, markeredgewidth=0.0, gid=gid, label=label)[0]
+def _dots(axes: Axes, x: Array, y: Array, mark: str, number: int, size: float, gid: str, label: str | None = None) -> Any:
+    """In colour `number`; of many those that differ on paper."""
+    look: dict[str, Any] = {"color": style.SERIES[number], "markersize": size, "markeredgewidth": 0.0}
+    return axes.plot(*reduced(x, y, COLUMNS), mark, gid=gid, label=label, **look)[0]
 
 
 def _room(axes: Axes, values: Array, least: float) -> None:
@@ -199,7 +195,7 @@ def _over_time(panels: Sequence[Axes], t: Array, nominal_period: float) -> None:
     panels[-1].set_xlabel("time (s)", labelpad=1.5)
 
 
-def _legend(axes: Axes) -> None:
-    handles, names = axes.get_legend_handles_labels()
-    where: dict[str, Any] = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0), "ncols": 2, "borderaxespad": 0.0}
-    style.key(axes, list(zip(handles, names, strict=True)), markerscale=1.8, **where)
+def _key(axes: Axes, entries: Sequence[tuple[Any, str]], side: str, scale: float) -> None:
+    """Above a panel, on that side."""
+    where: dict[str, Any] = {"loc": f"lower {side}", "bbox_to_anchor": (float(side == "right"), 1.0), "borderaxespad": 0.0}
+    style.key(axes, entries, ncols=2, markerscale=scale, **where)

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from matplotlib.transforms import Bbox
 from numpy.typing import NDArray
 
 from watchsim.geometry.hairspring import Coil
@@ -288,6 +289,11 @@ class Frame:
     width: float
     height: float
 
+    @property
+    def box(self) -> Bbox:
+        """The same for matplotlib."""
+        return Bbox.from_bounds(self.left, self.bottom, self.width, self.height)
+
     def near(self, x: float, y: float, reach: float) -> bool:
         """Does the point lie in the frame, or closer to it than `reach` both ways?"""
         return -reach < x - self.left < self.width + reach and -reach < y - self.bottom < self.height + reach
@@ -373,14 +379,14 @@ def _ground_below(run: Trajectory, points: Array) -> Array:
         pose = np.array([[*body.position, body.angle]])
         for loop in loops_of(body):
             line = placed(outline([loop], COARSE * size), pose)[0]
-            foot = _nearest(line, middle)
+            foot = nearest(line, middle)
             away = foot - middle
             if math.hypot(*away) <= REACH * size:
                 found.append((foot + GROUND * size * away / max(math.hypot(*away), 1e-9 * size))[None])
     return np.concatenate(found)
 
 
-def _nearest(line: Array, point: Array) -> Array:
+def nearest(line: Array, point: Array) -> Array:
     """The point of a polyline nearest to another point."""
     start, way = line[:-1], np.diff(line, axis=0)
     share = np.clip(np.sum((point - start) * way, axis=1) / np.maximum(np.sum(way * way, axis=1), 1e-300), 0.0, 1.0)

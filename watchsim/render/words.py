@@ -9,6 +9,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -71,19 +73,17 @@ class Lettering:
             x = stop
 
 
-# A text is laid out when it first appears and copied from then on.
-
-MOST = 2000  # texts kept
+KEPT = 2000  # texts
 
 
 class Words:
-    """Texts of one size (pixels) and colour on one background."""
+    """Texts of one size (pixels) and colour on one background, laid out when they first appear and copied from then on."""
 
     def __init__(self, size: float, ink: str, background: str, weight: str = "normal") -> None:
         self.size, self.height = size, math.ceil(1.5 * size)
         self._drop = round(0.4 * size)  # from the baseline down to the foot of the line
         self._ink, self._background, self._weight = ink, background, weight
-        self._kept: dict[str, Pixels] = {}
+        self._image = lru_cache(KEPT)(self._drawn)
 
     def write(self, text: str, x: float, baseline: float, out_pixels: Pixels, right: bool = False) -> None:
         """Copy `text` into the image from column `x` on, or up to it; the baseline is so many pixels above the bottom."""
@@ -98,30 +98,12 @@ class Words:
             inside = image[down.start - top : down.stop - top, across.start - left : across.stop - left]
             out_pixels[down, across] = inside
 
-    def width(self, text: str) -> int:
-        """Pixels that `text` takes."""
-        return int(self._image(text).shape[1])
-
-    def _image(self, text: str) -> Pixels:
-        if text not in self._kept:
-            if len(self._kept) >= MOST:
-                self._kept.clear()
-            self._kept[text] = self._drawn(text)
-        return self._kept[text]
-
     def _drawn(self, text: str) -> Pixels:
         room = math.ceil(self.size * (len(text) + 2))
         figure = Figure(figsize=((room + 0.5) / DPI, (self.height + 0.5) / DPI), dpi=DPI, facecolor=self._background)
         canvas = FigureCanvasAgg(figure)
-        drawn = figure.text(
-            0.0,
-            self._drop / (self.height + 0.5),
-            text,
-            fontsize=self.size,
-            color=self._ink,
-            weight=self._weight,
-            parse_math=False,
-        )
+        drawn = figure.text(0.0, self._drop / (self.height + 0.5), text, color=self._ink, weight=self._weight)
+        drawn.set(fontsize=self.size, parse_math=False)
         width = math.ceil(drawn.get_window_extent(canvas.get_renderer()).width) + 1
         canvas.draw()
         return np.array(canvas.buffer_rgba())[:, :width].copy()
@@ -137,7 +119,7 @@ LEAST = 8.0  # pixels of height for the bodies
 
 @dataclass(frozen=True)
 class Reading:
-    """A changing number: whose, against which carrier, how it is told, and where its last pixel and its baseline are."""
+    """A changing number: whose, against which carrier, how it is written, and where its last pixel and its baseline are."""
 
     body: str
     on: str | None
@@ -172,9 +154,9 @@ def lay_out(figure: Figure, run: Trajectory, window: Window, step: float, style:
     unit = _unit(figure)
     time = Lettering(max(TIME * unit, SMALLEST), style.ink, style.background, "bold")
     small = Lettering(max(SMALL * unit, SMALLEST), style.ink, style.background)
-    told = clock(window)
+    time_of = clock(window)
     baseline = round(height - PAD * unit - 0.75 * TIME * unit)
-    time_width = max(time.width(told.text(t, step)) for t in window)
+    time_width = max(time.width(time_of.text(t, step)) for t in window)
     _title(figure, run.scene.title, (PAD * unit, baseline), width - 2.0 * PAD * unit - time_width - GAP * unit, style.ink)
     # The line for notes is kept free even where none is shown: a frame drawn alone matches its movie.
     top = height - baseline + 0.35 * TIME * unit + 1.3 * small.size
@@ -182,17 +164,15 @@ def lay_out(figure: Figure, run: Trajectory, window: Window, step: float, style:
     frame = Frame(0.0, bottom, width, height - top - bottom)
     if frame.height < LEAST:
         raise ValueError(f"size = {width}x{height}: no room is left beside title, time and read-outs; choose a larger picture")
-    return Layout(frame, told, step, time, (round(width - PAD * unit), baseline), small, readings)
+    return Layout(frame, time_of, step, time, (round(width - PAD * unit), baseline), small, readings)
 
 
 def draw_notes(figure: Figure, frame: Frame, speed: float | None, turn: float, style: Style) -> None:
     """Below the time: how fast a movie goes, and by how much (rad) the picture is turned against the scene's axes."""
     size = max(SMALL * _unit(figure), SMALLEST)
-    notes = [] if speed is None else [speed_text(speed)]
-    if turned := turn_text(turn):
-        notes.append(turned)
+    notes = ["" if speed is None else speed_text(speed), turn_text(turn)]
     place = (frame.left + frame.width - PAD * _unit(figure), frame.bottom + frame.height + 0.3 * size)
-    _words(figure, ", ".join(notes), place, size, style.faint, ha="right")
+    _words(figure, ", ".join(filter(None, notes)), place, size, style.faint, ha="right")
 
 
 def draw_scale(figure: Figure, scale: float, style: Style) -> None:
@@ -201,14 +181,8 @@ def draw_scale(figure: Figure, scale: float, style: Style) -> None:
     length, name = scale_bar(BAR * width / scale)
     right, base = width - PAD * unit, PAD * unit
     left, tick = right - length * scale, 4.0 * unit
-    line = Line2D(
-        [left, left, left, right, right, right],
-        [base + tick, base - tick, base, base, base - tick, base + tick],
-        color=style.ink,
-        linewidth=max(1.5 * unit, 1.0),
-        transform=IdentityTransform(),
-    )
-    figure.add_artist(line)
+    x, y = [left] * 3 + [right] * 3, [base + tick, base - tick, base, base, base - tick, base + tick]
+    _line(figure, x, y, style.ink, max(1.5 * unit, 1.0))
     _words(figure, name, (0.5 * (left + right), base + 2.0 * tick), max(SMALL * unit, SMALLEST), style.ink, ha="center")
 
 
@@ -218,14 +192,8 @@ def draw_key(figure: Figure, entries: Sequence[tuple[str, str]], style: Style) -
     size, x = max(SMALL * unit, SMALLEST), PAD * unit
     base = figure.bbox.height - (PAD + 0.75 * TIME + 0.35 * TIME) * unit - size
     for colour, meaning in entries:
-        stroke = Line2D(
-            *([x, x + 1.6 * size], [base + 0.35 * size] * 2),
-            color=colour,
-            linewidth=max(3.0 * unit, 1.5),
-            solid_capstyle="round",
-            transform=IdentityTransform(),
-        )
-        figure.add_artist(stroke)
+        ends, height = [x, x + 1.6 * size], [base + 0.35 * size] * 2
+        _line(figure, ends, height, colour, max(3.0 * unit, 1.5), solid_capstyle="round")
         text = _words(figure, meaning, (x + 2.2 * size, base), size, style.ink)
         x += 2.2 * size + _width(text) + GAP * unit
 
@@ -233,10 +201,12 @@ def draw_key(figure: Figure, entries: Sequence[tuple[str, str]], style: Style) -
 def draw_rules(figure: Figure, frame: Frame, style: Style) -> None:
     """Hairlines along the frame, for a picture that cuts bodies off there."""
     for y in (frame.bottom, frame.bottom + frame.height):
-        ends = [frame.left, frame.left + frame.width]
-        figure.add_artist(
-            Line2D(ends, [y, y], color=style.grid, linewidth=max(_unit(figure), 0.7), transform=IdentityTransform())
-        )
+        _line(figure, [frame.left, frame.left + frame.width], [y, y], style.grid, max(_unit(figure), 0.7))
+
+
+def _line(figure: Figure, x: list[float], y: list[float], colour: str, width: float, **look: Any) -> None:
+    """A line through places in pixels."""
+    figure.add_artist(Line2D(x, y, color=colour, linewidth=width, transform=IdentityTransform(), **look))
 
 
 def relative_size(width: float, height: float) -> float:
@@ -276,7 +246,7 @@ class _Cell:
 
     body: Body
     name: Text
-    tell: Callable[[Array], str]
+    as_text: Callable[[Array], str]
     look: Finish
     x: float
     row: int
@@ -294,38 +264,26 @@ def _readings(
     for body in run.scene.bodies:
         if body.name not in run.slices:
             continue
-        told = _told(run, body, window)
-        within = body.motion != "slide" and body.name != swinging and goes_round(told[:, 2])
-        tell, ends = reading(body, told, within)
+        seen = sampled(run, body, window)
+        if body.on is not None:  # against its carrier
+            seen = seen - sampled(run, run.scene.body(body.on), window)
+        within = body.motion != "slide" and body.name != swinging and goes_round(seen[:, 2])
+        as_text, ends = reading(body, seen, within)
         name = _words(figure, f"{body.name} mod 360°" if within else body.name, (0.0, 0.0), small.size, style.ink)
         taken = 1.5 * CHIP * small.size + _width(name) + 0.8 * small.size + max(small.width(text) for text in ends)
         if x > left and x + taken > limit:
             x, row = left, row + 1
-        cells.append(_Cell(body, name, tell, worn[body.name], x, row, taken))
+        cells.append(_Cell(body, name, as_text, worn[body.name], x, row, taken))
         x += taken + GAP * unit
     placed = tuple(_place(figure, cell, round(PAD * unit + (row - cell.row) * line), small.size) for cell in cells)
     return placed, 1.6 * PAD * unit + (row + 1) * line
 
 
-def _told(run: Trajectory, body: Body, window: Window) -> Array:
-    """The body's poses as its reading shows them: a carried one against its carrier."""
-    own = sampled(run, body, window)
-    return own if body.on is None else own - sampled(run, run.scene.body(body.on), window)
-
-
 def _place(figure: Figure, cell: _Cell, base: int, size: float) -> Reading:
     """Put a cell's coloured chip and name on the figure, on a baseline `base` pixels above the bottom."""
     x, chip = round(cell.x), CHIP * size
-    box = FancyBboxPatch(
-        (x, base - 0.05 * size),
-        chip,
-        chip,
-        boxstyle=f"round,pad=0,rounding_size={0.2 * size}",
-        facecolor=cell.look.fill,
-        edgecolor=cell.look.edge,
-        linewidth=max(0.06 * size, 0.7),
-        transform=IdentityTransform(),
-    )
+    box = FancyBboxPatch((x, base - 0.05 * size), chip, chip, boxstyle=f"round,pad=0,rounding_size={0.2 * size}")
+    box.set(facecolor=cell.look.fill, edgecolor=cell.look.edge, linewidth=max(0.06 * size, 0.7), transform=IdentityTransform())
     figure.add_artist(box)
     cell.name.set_position((x + 1.5 * chip, base))
-    return Reading(cell.body.name, cell.body.on, cell.tell, round(x + cell.taken), base)
+    return Reading(cell.body.name, cell.body.on, cell.as_text, round(x + cell.taken), base)

@@ -6,6 +6,7 @@ one that is replaced stays untouched until then.
 
 from __future__ import annotations
 
+import contextlib
 import copy
 import dataclasses
 import functools
@@ -79,10 +80,8 @@ def _installed() -> Mapping[str, str]:
     """Looked up once: it means reading what every package says of itself."""
     found = {"python": platform.python_version()}
     for package in PACKAGES:
-        try:
+        with contextlib.suppress(metadata.PackageNotFoundError):
             found[package] = metadata.version(package)
-        except metadata.PackageNotFoundError:
-            continue
     return found
 
 
@@ -101,19 +100,14 @@ def _completed(entry: dict[str, Any], body: Body, here: Path, folder: Path | Non
     full.setdefault("motion", body.motion)
     full.setdefault("position", _pair(body.position, "m"))
     full.setdefault("angle", _si(body.angle, "rad"))
-    for key, value in _start(body).items():
-        full.setdefault(key, value)
+    if body.motion == "free":
+        full.setdefault("velocity", _pair(body.velocity[:2], "m/s"))
+        full.setdefault("spin", _si(body.velocity[2], "rad/s"))
+    elif body.motion != "fixed" and body.prescribed is None:
+        full.setdefault("velocity", _si(body.velocity[0], "rad/s" if body.motion == "pivot" else "m/s"))
     if "solids" not in full and body.motion != "fixed" and body.prescribed is None:
         full.setdefault("inertia", _si(body.inertia, "kg·m²"))
     return full
-
-
-def _start(body: Body) -> dict[str, Any]:
-    if body.motion == "free":
-        return {"velocity": _pair(body.velocity[:2], "m/s"), "spin": _si(body.velocity[2], "rad/s")}
-    if body.motion == "fixed" or body.prescribed is not None:
-        return {}
-    return {"velocity": _si(body.velocity[0], "rad/s" if body.motion == "pivot" else "m/s")}
 
 
 def _complete_forces(source: dict[str, Any], scene: Scene) -> None:

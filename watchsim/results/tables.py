@@ -25,19 +25,7 @@ from watchsim.simulation.trajectory import Trajectory
 from watchsim.storage.columns import blocks
 from watchsim.storage.destination import give_name, nameless
 
-EVENT_COLUMNS = (
-    "t_s",
-    "event",
-    "pair",
-    "bodies",
-    "primitives",
-    "impulse_N_s",
-    "tangential_impulse_N_s",
-    "energy_lost_J",
-    "value",
-)
-
-HEAD = (",".join(EVENT_COLUMNS) + "\r\n").encode()
+HEAD = b"t_s,event,pair,bodies,primitives,impulse_N_s,tangential_impulse_N_s,energy_lost_J,value\r\n"
 ROWS = 1 << 13  # of the table that are made into text together
 FORMULA = ("=", "+", "-", "@", "\t", "\r", "\n")  # what a text begins with that spreadsheets compute
 NO_IMPULSE = "0.0,0.0,0.0,"  # of an event that is no impact

@@ -8,6 +8,7 @@ from __future__ import annotations
 import contextlib
 import math
 import mmap
+import shutil
 import tempfile
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
@@ -22,7 +23,7 @@ from numpy.typing import NDArray
 # Into files without a name: the system takes them away when the process ends, however it ends. They are read through the page
 # cache, as arrays that are mapped; what was read can be let go again, so that it does not count as memory of the process.
 
-MOST = 32e6  # bytes of columns in memory before they are written out: minutes of a watch
+IN_MEMORY = 32e6  # bytes of columns in memory before they are written out: minutes of a watch
 NEXT = 4e6  # bytes that are written out together from then on
 BLOCK = 1 << 16  # rows that are worked on at a time, where a column need not lie in memory
 
@@ -34,7 +35,7 @@ class Columns:
 
     def __init__(self) -> None:
         self.folder: Path | None = None
-        self.most = MOST
+        self.most = IN_MEMORY
         self.rows = 0
         self._parts: list[Arrays] = []  # in memory, behind what is in the files
         self._held = 0
@@ -190,31 +191,17 @@ def unpacked(archive: np.lib.npyio.NpzFile, name: str, folder: Path) -> NDArray[
     ValueError, zipfile.BadZipFile and the like for a damaged member.
     """
     member, file = f"{name}.npy", archive.zip
-    if file is None or member not in file.namelist() or file.getinfo(member).file_size <= MOST:
+    if file is None or member not in file.namelist() or file.getinfo(member).file_size <= IN_MEMORY:
         return np.asarray(archive[name])
     for place in (folder, None):
         with contextlib.suppress(OSError), file.open(member) as packed:
-            shape, by_columns, kind = _header(packed)
-            if by_columns or kind.hasobject or file.getinfo(member).file_size != packed.tell() + _bytes(shape, kind):
+            read = npy.read_array_header_1_0 if npy.read_magic(packed) == (1, 0) else npy.read_array_header_2_0
+            shape, by_columns, kind = read(packed)  # type: ignore[no-untyped-call, unused-ignore]
+            size = packed.tell() + math.prod(shape) * kind.itemsize
+            if by_columns or kind.hasobject or file.getinfo(member).file_size != size:
                 break  # not written here: for numpy to read or to refuse
-            return _moved(packed, place, shape, kind)
+            with tempfile.TemporaryFile(dir=place) as unnamed:  # the mapping holds it open
+                shutil.copyfileobj(packed, unnamed, PIECE)
+                unnamed.flush()
+                return mapped(unnamed, shape[0], np.zeros((0, *shape[1:]), kind))
     return np.asarray(archive[name])
-
-
-def _header(packed: IO[bytes]) -> tuple[tuple[int, ...], bool, np.dtype[Any]]:
-    """Shape, whether column by column, and type."""
-    version = npy.read_magic(packed)
-    read = npy.read_array_header_1_0 if version == (1, 0) else npy.read_array_header_2_0
-    return read(packed)  # type: ignore[no-any-return, no-untyped-call, unused-ignore]
-
-
-def _bytes(shape: tuple[int, ...], kind: np.dtype[Any]) -> int:
-    return math.prod(shape) * kind.itemsize
-
-
-def _moved(packed: IO[bytes], place: Path | None, shape: tuple[int, ...], kind: np.dtype[Any]) -> NDArray[Any]:
-    with tempfile.TemporaryFile(dir=place) as file:  # the mapping holds it open
-        while piece := packed.read(PIECE):
-            file.write(piece)
-        file.flush()
-        return mapped(file, shape[0], np.zeros((0, *shape[1:]), kind))
