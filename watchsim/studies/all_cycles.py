@@ -19,7 +19,7 @@ import numpy as np
 
 from watchsim.analysis.timing import DAY, Averages, averages, beats
 from watchsim.analysis.verdict import verdict
-from watchsim.analysis.verdict_kinds import BACKWARDS, KNOCKS, STOPS, TICKS, TRIPS, UNSETTLED
+from watchsim.analysis.verdict_kinds import STOPS, TICKS, UNSETTLED
 from watchsim.dynamics.forces import stored_energy
 from watchsim.scene.scene import Recording
 from watchsim.simulation.runner import Run, trajectory_of
@@ -32,13 +32,6 @@ from watchsim.studies.section import Loop, NoSection, Section, SolverGaveUp, fir
 # An ordinary run from where the search for a cycle ended, and the verdict on it. The only place that knows how a run is
 # judged.
 
-# What the search has met, where the run shows no more than that.
-WORDS = {
-    STOPS: "the swing does not unlock the wheel any more",
-    TRIPS: "the wheel runs through: it passes more than one tooth in an oscillation",
-    BACKWARDS: "the wheel turns against its drive",
-    KNOCKS: "the oscillator swings so far that it is struck on its way out, and no regular swing balances the drive",
-}
 WHEN = re.compile(r"^t = \S+ s  ")  # counted from the start of a run that nobody has asked for
 
 
@@ -66,16 +59,11 @@ def run_from(loop: Loop, state: State | None, duration: float) -> Trajectory:
     return trajectory_of(run, stop, 0.0, 0.0)
 
 
-def judged(run: Trajectory, suspicion: str = "", since_start: bool = False) -> Judgement:
-    """What the mechanism does in that run; `suspicion` is what the search for a cycle met.
-
-    Times are given only where the run began with the scene (`since_start`).
-    """
+def judged(run: Trajectory, since_start: bool = False) -> Judgement:
+    """What the mechanism does in that run; times are given only where it began with the scene (`since_start`)."""
     if run.stop.gave_up:
         return Judgement(None, run.stop_message)
     found = verdict(run)
-    if found.name in (TICKS, UNSETTLED, None) and suspicion in WORDS:
-        return Judgement(suspicion, WORDS[suspicion])
     message = found.message or ""
     return Judgement(found.name, message if since_start else WHEN.sub("", message))
 

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from watchsim.analysis.verdict import OUTSIDE
 from watchsim.analysis.verdict_kinds import BACKWARDS, KNOCKS, STOPS, TRIPS, UNSETTLED
 from watchsim.simulation.state import EventKind, State
 from watchsim.simulation.trajectory import Array
@@ -20,7 +21,6 @@ from watchsim.studies.section import Events, Loop, Parts, Section, SolverGaveUp,
 EARLY, LATE = 0.03, 0.06  # of a period: how long before its end an oscillation is looked at, and for how long after
 LONGER = 1.5  # times the time of the last oscillation: how long the next one may take
 NEAR = 0.05  # of a pitch: by how much the wheel may miss a whole number of teeth
-FAR, LIFT = 2.0, 0.3  # times where the lift begins, and of the amplitude: what is struck further out is no lift
 
 
 class Return(NamedTuple):
@@ -120,22 +120,24 @@ class ReturnMap:
 
 
 def knocked(events: Events, own: Events, parts: Parts) -> bool:
-    """Was the oscillator struck on its way out, far outside the lift?
+    """Was the oscillator struck by the lever, or by a stop, more than half a turn from its rest position?
 
-    The first noise of a beat is heard where the lift begins, on the way in; the lift ends as far on the other side. How far
-    from the rest position a noise was heard follows from its time: between passage and turning point nearly a sine.
+    How far from it a noise was heard follows from its time: between passage and turning point nearly a sine.
     """
-    noises = events["t"][(events["kind"] == EventKind.IMPACT) & parts.touching[events["contact"]]]
+    noises = events["t"][(events["kind"] == EventKind.IMPACT) & parts.blocking[events["contact"]]]
     passages = events["t"][(events["kind"] == EventKind.CROSS) & (events["body"] == parts.body)]
-    reached = np.append(0.0, own["t"])
+    reach = np.abs(own["value"] - parts.level)
+    if not len(noises) or not len(passages) or not reach.max(initial=0.0) > OUTSIDE:
+        return False
+    reached, reach = np.append(0.0, own["t"]), np.append(reach[0], reach)
     for passage in passages:
-        before, after = reached[reached < passage], reached[reached > passage]
-        if not len(before) or not len(after):
+        after = int(np.searchsorted(reached, passage))
+        if after == len(reached):
             continue
-        heard = noises[(noises > before[-1]) & (noises <= after[0])]
-        phase = (heard - passage) / np.where(heard < passage, passage - before[-1], after[0] - passage)
-        away = np.sin(0.5 * np.pi * phase)
-        if len(away) and away.max() > max(FAR * abs(min(away[0], 0.0)), LIFT):
+        heard = noises[(noises > reached[after - 1]) & (noises <= reached[after])]
+        turn = np.where(heard < passage, after - 1, after)
+        away = reach[turn] * np.sin(0.5 * np.pi * (heard - passage) / (reached[turn] - passage))
+        if (away > OUTSIDE).any():
             return True
     return False
 
@@ -214,8 +216,8 @@ def fixed_point(oscillate: Callable[[float], Return], start: float) -> Fixed | L
 
 FOLLOWED = 64  # oscillations
 MOST_REPEATS = 16  # oscillations after which it may repeat itself
-NEAR_REPEATS = 1e-3  # of the amplitude: how closely it must have come back
-ROUNDS = 3  # times so many oscillations are followed
+NEAR_REPEATS = 1e-5  # of the amplitude: how closely it must have come back
+ROUNDS = 6  # times so many oscillations are followed
 
 
 def repeats(oscillate: ReturnMap, amplitude: float) -> tuple[int, float] | None:
@@ -246,7 +248,8 @@ ALIKE = 1e-9  # of the amplitude: teeth that differ by less are alike
 CLOSED = 1e-11  # of the amplitude: what a turn of a wheel with unequal teeth must close to
 MOST_POLISH = 12  # turns
 MOST_TEETH = 400
-FINER = 0.1  # times the tolerance: to see what the tolerance does
+FINER = 0.01  # times the tolerance: to see what the tolerance does
+CAUTION = 2.0  # times what it does, and what else is known of the error
 
 
 class Slope(NamedTuple):
@@ -258,9 +261,14 @@ class Slope(NamedTuple):
 
 
 class Polished(NamedTuple):
-    """Means over a cycle, their errors (SI), and its multiplier over `per` oscillations; None for what was not asked for."""
+    """Means over a cycle, their errors (SI), and its multiplier over `per` oscillations; None for what was not asked for.
+
+    `amplitude`: where it turns at the section; `turn`: the whole cycle from there.
+    """
 
     means: Measures
+    amplitude: float
+    turn: Return
     amplitude_error: float | None = None
     period_error: float | None = None
     beat_error_error: float | None = None
@@ -268,11 +276,15 @@ class Polished(NamedTuple):
     multiplier_error: float | None = None
     per: int = 1
 
+    def moved_by(self, amplitude: float) -> Polished:
+        """The same, the amplitude less sure by so much (rad or m)."""
+        return self._replace(amplitude_error=(self.amplitude_error or 0.0) + amplitude)
+
 
 def glanced(oscillate: ReturnMap, found: Fixed) -> Polished:
     """The cycle by the one oscillation at the fixed point."""
     got = oscillate(found.amplitude)
-    return Polished(measures(got.events, oscillate.parts, _start(oscillate, found.amplitude), got.time))
+    return Polished(measures(got.events, oscillate.parts, _start(oscillate, found.amplitude), got.time), found.amplitude, got)
 
 
 def slope_at(oscillate: ReturnMap, amplitude: float, oscillations: int = 1) -> Slope | Return:
@@ -330,11 +342,11 @@ def polished(oscillate: ReturnMap, found: Fixed, finer: Loop) -> Polished | Retu
         if isinstance(unequal, Return):
             return unequal
         whole, error, per = unequal.multiplier, unequal.error, number
-    shift, period_shift = _tolerance_shift(oscillate, amplitude, slope, finer)
+    shift, period_shift = _tolerance_shift(oscillate, amplitude, turn, number, whole, slope.period, finer)
     means = measures(turn.events, oscillate.parts, _start(oscillate, amplitude), turn.time)
     scatter = means.spread / math.sqrt(number) if per == 1 else 0.0
-    amplitude_error = abs(left) + shift + scatter
-    return _with_errors(means, amplitude, amplitude_error, slope, period_shift)._replace(
+    amplitude_error = CAUTION * (abs(left) + shift) + scatter
+    return _with_errors(means, amplitude, turn, amplitude_error, slope, period_shift)._replace(
         multiplier=whole if per > 1 else slope.multiplier, multiplier_error=error, per=per
     )
 
@@ -351,16 +363,17 @@ def polished_over(oscillate: ReturnMap, amplitude: float, number: int, finer: Lo
     slope = slope_at(oscillate, amplitude, number)
     if isinstance(slope, Return):
         return slope
-    shift, period_shift = _tolerance_shift(oscillate, amplitude, slope, finer, number)
+    shift, period_shift = _tolerance_shift(oscillate, amplitude, turn, number, slope.multiplier, slope.period, finer)
     means = measures(turn.events, oscillate.parts, _start(oscillate, amplitude), turn.time)
-    return _with_errors(means, amplitude, abs(left) + shift, slope, period_shift)._replace(
+    return _with_errors(means, amplitude, turn, CAUTION * (abs(left) + shift), slope, period_shift)._replace(
         multiplier=slope.multiplier, multiplier_error=slope.error, per=number
     )
 
 
-def _with_errors(means: Measures, amplitude: float, error: float, slope: Slope, period_shift: float) -> Polished:
+def _with_errors(means: Measures, amplitude: float, turn: Return, error: float, slope: Slope, period_shift: float) -> Polished:
     """Errors of period and beat error follow from that of the amplitude and from the solver's tolerance."""
-    return Polished(means, error, period_shift + abs(slope.period) * error, error / amplitude * means.period + period_shift)
+    uneven = error / amplitude * means.period + period_shift
+    return Polished(means, amplitude, turn, error, period_shift + abs(slope.period) * error, uneven)
 
 
 def _start(oscillate: ReturnMap, amplitude: float) -> float:
@@ -385,12 +398,14 @@ def _closed(
     return amplitude, turn, left
 
 
-def _tolerance_shift(oscillate: ReturnMap, amplitude: float, slope: Slope, finer: Loop, number: int = 1) -> tuple[float, float]:
-    """By how much amplitude and period move when the solver is ten times as exact: one return of each is enough."""
-    here, there = oscillate(amplitude, number), ReturnMap(finer, oscillate.parts, oscillate.section)
+def _tolerance_shift(
+    oscillate: ReturnMap, amplitude: float, turn: Return, number: int, whole: float, period: float, finer: Loop
+) -> tuple[float, float]:
+    """By how much amplitude and period move when the solver is a hundred times as exact: one turn more is enough."""
+    there = ReturnMap(finer, oscillate.parts, oscillate.section)
     there.period = oscillate.period
     exact = there(amplitude, number)
-    if here.trouble or exact.trouble:
+    if turn.trouble or exact.trouble:
         return np.nan, np.nan
-    shift = (exact.amplitude - here.amplitude) / (1.0 - slope.multiplier)
-    return abs(shift), abs((exact.time - here.time) / number + slope.period * shift)
+    shift = (exact.amplitude - turn.amplitude) / (1.0 - whole)
+    return abs(shift), CAUTION * abs((exact.time - turn.time) / number + period * shift)

@@ -43,6 +43,7 @@ class Parts:
     period      of small swings; `nominal` what the rate is measured against
     has_lever   True where a lever stands between the two
     touching    by contact: True where it touches the oscillator; a last False stands for no contact (-1)
+    blocking    the same of contacts with the lever and with what is fixed, which may turn the oscillator back
     """
 
     coordinate: int
@@ -56,6 +57,7 @@ class Parts:
     nominal: float
     has_lever: bool
     touching: NDArray[np.bool_]
+    blocking: NDArray[np.bool_]
 
     @property
     def teeth(self) -> int | None:
@@ -71,6 +73,7 @@ def parts_of(scene: Scene, compiled: Compiled) -> Parts | None:
     body, model = names.index(found.oscillator), compiled.model
     coordinate = compiled.slices[found.oscillator].start
     owner = model.primitives.body
+    blocks = np.array([one.motion == "fixed" or one.name == found.lever for one in scene.bodies])
     touching = np.append((owner[model.contacts.a] == body) | (owner[model.contacts.b] == body), False)
     # A wheel geared to another body stands where that one's coordinate says.
     bound = bonds(scene.bodies, rides(scene.bodies))
@@ -90,6 +93,7 @@ def parts_of(scene: Scene, compiled: Compiled) -> Parts | None:
         1.0 / (nominal_frequency(scene) or hertz),
         found.lever is not None,
         touching,
+        touching & np.append(blocks[owner[model.contacts.a]] | blocks[owner[model.contacts.b]], False),
     )
 
 

@@ -1,7 +1,7 @@
 """What does the watch settle to, without waiting until it has?
 
-The limit cycle is a fixed point of the return map (return_map.py), found by shooting (shooting.py) and closed over a whole turn
-of the wheel (polish.py). Where there is none, an ordinary run shows what happens instead (judge.py).
+The limit cycle is a fixed point of the return map, the one that the scene's own run comes to (attractor.py), closed over a
+whole turn of the wheel (return_map.py). Where there is none, an ordinary run from the scene's start shows what happens instead.
 """
 
 from __future__ import annotations
@@ -12,18 +12,18 @@ import time
 from pathlib import Path
 from typing import NamedTuple
 
-import numpy as np
-
 from watchsim.analysis.timing import DAY
-from watchsim.analysis.verdict_kinds import STOPS, TICKS, UNSETTLED, VERDICTS
+from watchsim.analysis.verdict_kinds import TICKS, UNSETTLED
 from watchsim.scene.errors import Faults, SceneError
 from watchsim.scene.roles import is_driven, only_presses, roles
 from watchsim.scene.scene import Scene
 from watchsim.scene.toml import key_lines
 from watchsim.simulation.state import State
 from watchsim.studies.all_cycles import Survey, Swings, judged, late_means, run_from, with_all_cycles
+from watchsim.studies.attractor import Led, attractor, moved_on
 from watchsim.studies.cycle import Cycle
 from watchsim.studies.return_map import (
+    CAUTION,
     FINER,
     Fixed,
     Lost,
@@ -40,11 +40,8 @@ from watchsim.studies.section import (
     Loop,
     NoSection,
     Parts,
-    Section,
     first_section,
     parts_of,
-    section_at,
-    section_from,
     why_no_section,
     with_springs_held,
 )
@@ -84,14 +81,14 @@ def _refused(scene: Scene, seen: str) -> SceneError:
     return SceneError(faults.found)
 
 
-REST = 1e-9  # rad or m per scale: bodies that stand still come back so closely, or the section is moved on
-SECTIONS = 6  # of them at most
+TURNS = 6  # of the wheel, until what stands still comes back to its place
 AFTERWARDS = 24  # periods of the run that shows what happens where there is no cycle
 LONGEST = 120.0  # s, of a run that stands in for a cycle
 FEWEST = 40  # periods of it
 SETTLED = 1e-4  # of the amplitude: what such a run may still scatter and drift
 LOSSLESS = 1e-9  # of the amplitude, in one oscillation
 DIES = "its swing dies away within an oscillation"
+NO_REPEAT = "its swing does not repeat itself"
 ASIDE = 0.01  # of the amplitude: beside an unstable cycle, to see where it is left for
 
 
@@ -158,36 +155,60 @@ def _searched(loop: Loop, search: Search) -> Cycle:
         if section.still or not is_driven(loop.scene):
             if parts.wheel < 0:
                 return Cycle(False, None, DIES)
-            return _instead(loop, None, STOPS, section.time)
+            return _by_run(loop, parts, DIES, section.time)
         return _by_run(loop, parts, "at no turning point of the oscillator does everything else stand still")
     if not is_driven(loop.scene):
         return _alone(ReturnMap(loop, parts, section))
-    start = section.amplitude if search.amplitude is None else search.amplitude
-    oscillate, found = _fixed(loop, parts, section, start)
-    cycle = _shot(oscillate, found, search.brief)
+    if search.amplitude is not None:
+        begin = section.at(loop, parts, search.amplitude)
+        if begin is None:
+            return Cycle(False, None, "the parts cannot stand still at that amplitude")
+        section = dataclasses.replace(section, state=begin, amplitude=search.amplitude)
+    led = attractor(loop, parts, section)
+    cycle = _shot(led, search.brief, None if search.amplitude is None else section.state)
     if not search.all_cycles:
         return cycle
-    known = start if isinstance(found, Lost) else found.amplitude
-    swings = Swings(oscillate)
-    return with_all_cycles(cycle, Survey(swings, known), swings)
+    swings = Swings(led.oscillate)
+    return with_all_cycles(cycle, Survey(swings, led.found.amplitude), swings)
 
 
-def _shot(oscillate: ReturnMap, found: Fixed | Lost, brief: bool) -> Cycle:
-    """What shooting has found, and how exactly it is known."""
+def _shot(led: Led, brief: bool, state: State | None) -> Cycle:
+    """What the run goes to, and how exactly it is known; `state` where it began, None at the scene's start."""
+    oscillate, found = led.oscillate, led.found
     loop, parts = oscillate.loop, oscillate.parts
     finer = Loop(loop.scene, max(FINER * loop.tolerance, FINEST_TOLERANCE), like=loop)
     if isinstance(found, Lost):
         again = _after_several(oscillate, found.amplitude, finer) if found.trouble == UNSETTLED else None
-        return again or _lost(oscillate, found)
+        return again or _by_run(loop, parts, NO_REPEAT, led.time + AFTERWARDS * parts.period, state)
     if brief and abs(found.slope) < 1.0:
         return _told(loop, parts, glanced(oscillate, found))
-    exact = polished(oscillate, found, finer)
+    exact = _closed(oscillate, found, finer)
     loop.simulated += finer.simulated
     if isinstance(exact, Return):
-        return _lost(oscillate, Lost(found.amplitude, exact.trouble, False))
+        return _by_run(loop, parts, NO_REPEAT, led.time + FEWEST * parts.period, state)
     if exact.multiplier is None or not abs(exact.multiplier) < 1.0:
         return _after_several(oscillate, (1.0 + ASIDE) * found.amplitude, finer) or _unstable(loop, parts, exact)
     return _told(loop, parts, exact)
+
+
+def _closed(oscillate: ReturnMap, found: Fixed, finer: Loop) -> Polished | Return:
+    """The cycle over a whole turn of the wheel, after which all that stands still has come back to its place.
+
+    A remontoir is wound once in several oscillations: the section moves on by a turn until nothing depends on where it began.
+    """
+    exact, moved = polished(oscillate, found, finer), 0.0
+    for _ in range(TURNS):
+        section = None if isinstance(exact, Return) else moved_on(oscillate, exact.turn)
+        if isinstance(exact, Return) or section is None:
+            return exact
+        oscillate = ReturnMap(oscillate.loop, oscillate.parts, section)
+        again = fixed_point(oscillate, exact.amplitude)
+        if isinstance(again, Lost):
+            break
+        before, exact = exact, polished(oscillate, again, finer)
+        if not isinstance(exact, Return):
+            moved = abs(exact.means.amplitude - before.means.amplitude)
+    return exact if isinstance(exact, Return) else exact.moved_by(CAUTION * moved)
 
 
 def _after_several(oscillate: ReturnMap, amplitude: float, finer: Loop) -> Cycle | None:
@@ -199,6 +220,8 @@ def _after_several(oscillate: ReturnMap, amplitude: float, finer: Loop) -> Cycle
     exact = polished_over(oscillate, found[1], number, finer)
     if isinstance(exact, Return) or exact.multiplier is None or not abs(exact.multiplier) < 1.0:
         return None
+    if abs(exact.amplitude - found[1]) > ASIDE * ASIDE * found[1]:
+        return None  # another one than the orbit's
     told = _told(loop, oscillate.parts, exact)
     if number == 1:
         return told
@@ -206,41 +229,6 @@ def _after_several(oscillate: ReturnMap, amplitude: float, finer: Loop) -> Cycle
     sizes = ", ".join(f"{one:.6g}°" for one in each)
     message = f"it repeats itself only after {number} oscillations, which differ: {sizes or 'their sizes'} in turn"
     return dataclasses.replace(told, message=message, amplitudes_deg=each)
-
-
-def _fixed(loop: Loop, parts: Parts, section: Section, amplitude: float) -> tuple[ReturnMap, Fixed | Lost]:
-    """The fixed point; the section moves on until what stands still at it comes back to its place."""
-    for _ in range(SECTIONS):
-        oscillate = ReturnMap(loop, parts, section)
-        found = fixed_point(oscillate, amplitude)
-        if isinstance(found, Lost) and found.trouble == UNSETTLED and section.touching:
-            oscillate, found = _elsewhere(oscillate, amplitude, found)
-        again = None if isinstance(found, Lost) else _moved_on(oscillate, found)
-        if again is None:
-            break
-        section, amplitude = again, found.amplitude
-    return oscillate, found
-
-
-def _elsewhere(oscillate: ReturnMap, amplitude: float, lost: Lost) -> tuple[ReturnMap, Fixed | Lost]:
-    """The fixed point where the parts rest otherwise than at the section that the search began with; else what was lost."""
-    swings = Swings(oscillate)
-    found = fixed_point(swings, amplitude)
-    there = None if isinstance(found, Lost) else swings.map_at(found.amplitude)
-    return (oscillate, lost) if there is None else (there, found)
-
-
-def _moved_on(oscillate: ReturnMap, found: Fixed) -> Section | None:
-    """A section an oscillation later where bodies at rest have not come back to their places; None where they have."""
-    got = oscillate(found.amplitude)
-    if got.state is None:
-        return None
-    parts, loop = oscillate.parts, oscillate.loop
-    away = np.abs(got.state.q - oscillate.section.state.q) / loop.compiled.model.coordinates.scale
-    away[[parts.coordinate, *parts.train]] = 0.0
-    if (away <= REST).all():
-        return None
-    return section_from(loop, parts, got.state) if oscillate.section.touching else section_at(loop, parts, got.state, got.time)
 
 
 def _told(loop: Loop, parts: Parts, exact: Polished) -> Cycle:
@@ -275,20 +263,6 @@ def _times(factor: float, value: float | None) -> float | None:
     return None if value is None else factor * value
 
 
-def _lost(oscillate: ReturnMap, lost: Lost) -> Cycle:
-    """The orbit left the region where the mechanism works as it should: what happens there."""
-    loop, parts, section = oscillate.loop, oscillate.parts, oscillate.section
-    state = section.at(loop, parts, lost.amplitude)
-    if lost.trouble in VERDICTS and lost.trouble != UNSETTLED:
-        return _instead(loop, state, lost.trouble, AFTERWARDS * parts.period)
-    return _by_run(loop, parts, "the search for a limit cycle did not converge", state)
-
-
-def _instead(loop: Loop, state: State | None, suspicion: str, duration: float) -> Cycle:
-    found = judged(run_from(loop, state, duration), suspicion, since_start=state is None)
-    return Cycle(False, found.name, found.message)
-
-
 def _unstable(loop: Loop, parts: Parts, exact: Polished) -> Cycle:
     """A cycle that the mechanism leaves at the slightest disturbance: what it does then."""
     told = _told(loop, parts, exact)
@@ -316,9 +290,10 @@ def _alone(oscillate: ReturnMap) -> Cycle:
     return Cycle(False, None, message, multipliers=(ratio,))
 
 
-def _by_run(loop: Loop, parts: Parts, why: str, state: State | None = None) -> Cycle:
+def _by_run(loop: Loop, parts: Parts, why: str, duration: float | None = None, state: State | None = None) -> Cycle:
     """What an ordinary run settles to, from the scene's start or from that state."""
-    duration = min(max(loop.scene.duration, FEWEST * parts.period), max(LONGEST, FEWEST * parts.period))
+    if duration is None:
+        duration = min(max(loop.scene.duration, FEWEST * parts.period), max(LONGEST, FEWEST * parts.period))
     run = run_from(loop, state, duration)
     seen = judged(run, since_start=state is None)
     means = late_means(run)
