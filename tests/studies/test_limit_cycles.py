@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,11 +11,13 @@ from dead_beat_scenes import one_wheel, two_wheels, with_catch
 from every_time import few
 from hypothesis import given
 from hypothesis import strategies as st
+from ordinary.geared_escapements import with_train
 from scipy.optimize import brentq
 
 import watchsim as ws
 from watchsim.analysis.timing import mean_over
 from watchsim.commands.steady import text
+from watchsim.scene.scene import Scene
 from watchsim.simulation.recording import unevenness
 from watchsim.studies.all_cycles import Survey, judged, run_from
 from watchsim.studies.return_map import Fixed, Lost, Return, fixed_point
@@ -30,6 +33,55 @@ def bench():
 @pytest.fixture(scope="module")
 def swiss():
     return ws.load(ws.profiles_dir() / "swiss_lever")
+
+
+def changed(profile: str, torque: float, friction: float, restitution: float) -> Scene:
+    """Another torque (N·m), and one law for all contacts."""
+    scene = ws.load(ws.profiles_dir() / profile)
+    contacts = tuple(replace(one, friction=friction, restitution=restitution) for one in scene.contacts)
+    drive = next(one for one in scene.torques if one.over == "constant" and one.value)
+    torques = tuple(replace(one, value=torque) if one is drive else one for one in scene.torques)
+    return replace(scene, torques=torques, contacts=contacts)
+
+
+def end_of_run(scene: Scene, duration: float, half_swings: int) -> float:
+    return float(ws.beats(ws.simulate(scene, duration, record="events", tolerance=1e-11)).amplitude_deg[-half_swings:].mean())
+
+
+@pytest.mark.slow
+def test_a_swing_that_wanders_where_the_map_jumps_is_not_taken_for_the_cycle_beyond() -> None:
+    """Of two attractors the run from here comes to the nearer one: 268.05° to 268.07°; 267.51° is beyond a jump of the map."""
+    scene = changed("set_a", -5.170956697715495e-07, 0.1375044434273026, 0.8)
+    cycle = steady(scene)
+    assert cycle.found
+    assert "does not repeat itself" in cycle.message
+    assert cycle.amplitude_deg == pytest.approx(end_of_run(scene, 300.0, 600), abs=2.0 * cycle.amplitude_deg_error)
+    assert steady(scene, amplitude=math.radians(267.0)).amplitude_deg == pytest.approx(267.510038, abs=1e-5)
+
+
+@pytest.mark.slow
+def test_blows_of_the_wheel_are_no_knocks() -> None:
+    scene = changed("detent", -6.549248804592556e-05, 0.06107153198010555, 0.5)
+    cycle = steady(scene)
+    assert (cycle.found, cycle.verdict) == (True, "ticks")
+    assert abs(cycle.amplitude_deg - end_of_run(scene, 600.0, 60)) <= cycle.amplitude_deg_error
+
+
+@pytest.mark.slow
+def test_what_is_wound_once_in_several_oscillations_comes_back_too() -> None:
+    scene = ws.load(ws.profiles_dir() / "remontoir")
+    cycle = steady(scene)
+    assert cycle.oscillations == 15
+    assert abs(cycle.amplitude_deg - end_of_run(scene, 300.0, 60)) <= cycle.amplitude_deg_error < 1e-6
+
+
+@pytest.mark.parametrize("pairs", few([1, 2], 1))
+def test_behind_a_train_of_real_gears(swiss: Scene, pairs: int) -> None:
+    """After a turn of the wheel the same leaf of its pinion is in mesh; of the pinion before it after 15."""
+    scene = with_train(swiss, pairs)
+    cycle = steady(scene)
+    assert cycle.found
+    assert abs(cycle.amplitude_deg - end_of_run(scene, 225.0, 450)) <= cycle.amplitude_deg_error
 
 
 def compared(scene, duration):
@@ -294,7 +346,7 @@ def test_against_a_long_run(profile):
     assert cycle.amplitude_deg == pytest.approx(rest.amplitude_deg, abs=1e-8)
     assert cycle.rate_s_per_d == pytest.approx(rest.rate_s_per_d, abs=1e-6)
     assert cycle.beat_error_ms == pytest.approx(rest.beat_error_ms, abs=1e-6)
-    assert cycle.simulated_s < 100.0
+    assert cycle.simulated_s < 150.0
 
 
 def test_too_little_torque_stops_it():

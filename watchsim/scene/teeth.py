@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Iterator
+from fractions import Fraction
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +23,7 @@ from watchsim.scene.trains import gear_ways, reached
 
 MOST_TEETH = 240
 FEWEST_TEETH = 3  # of a gear: pallets, pins and arms may look the same after half a turn
+LARGEST_RATIO = 10**6  # denominator of the ratio of a train
 SPACING = 1.0 / 400.0  # of the wheel's radius, between sampled points
 NOTICEABLE = 0.05  # share of the largest moment; smaller ones are inaccuracies of the drawing
 ROUND = 1e-6  # share of the length's own moment; a wheel without larger ones is a plain disc
@@ -85,6 +87,19 @@ def train(scene: Scene, name: str) -> dict[str, float]:
     """
     declared = gear_ways(scene)
     return reached(lambda one: {**dict(_meshes(scene, one)), **declared.get(one, {})}, name)
+
+
+def turns_of_a_round(scene: Scene, name: str) -> int:
+    """Turns of a wheel after which the same teeth stand in the same places again wherever its train is in mesh."""
+    ratios = train(scene, name)
+    passed = (
+        Fraction(abs(ratio)).limit_denominator(LARGEST_RATIO) * teeth_of(scene, [side])
+        for one, ratio in ratios.items()
+        for contact in scene.contacts
+        for side, other in (contact.sides, contact.sides[::-1])
+        if side.body == one and other.body in ratios
+    )
+    return math.lcm(*(teeth.denominator for teeth in passed))
 
 
 def _meshes(scene: Scene, name: str) -> Iterator[tuple[str, float]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -248,7 +248,8 @@ ALIKE = 1e-9  # of the amplitude: teeth that differ by less are alike
 CLOSED = 1e-11  # of the amplitude: what a turn of a wheel with unequal teeth must close to
 MOST_POLISH = 12  # turns
 MOST_TEETH = 400
-FINER = 0.01  # times the tolerance: to see what the tolerance does
+MOST_ROUNDS = 20  # turns of the wheel
+FINER, COARSER = 0.01, 10.0  # times the tolerance: to see what the tolerance does
 CAUTION = 2.0  # times what it does, and what else is known of the error
 
 
@@ -303,12 +304,16 @@ def slope_at(oscillate: ReturnMap, amplitude: float, oscillations: int = 1) -> S
 
 
 def turn_of(oscillate: ReturnMap, amplitude: float) -> tuple[int, Return]:
-    """Oscillations in a turn of the wheel (1 without one), and that turn from that amplitude on."""
+    """Oscillations until the wheel stands as before, and its train (1 without one); and these from that amplitude on.
+
+    Where a train takes more than MOST_ROUNDS turns for that, so many are all.
+    """
     parts = oscillate.parts
     if parts.wheel < 0:
         return 1, oscillate(amplitude)
     if parts.teeth:
-        return parts.teeth, oscillate(amplitude, parts.teeth)
+        number = parts.teeth * min(parts.rounds, MOST_ROUNDS)
+        return number, oscillate(amplitude, number)
     got = oscillate(amplitude)
     if got.state is None:
         return 1, got
@@ -318,7 +323,7 @@ def turn_of(oscillate: ReturnMap, amplitude: float) -> tuple[int, Return]:
     return number, got if number == 1 else oscillate(amplitude, number)
 
 
-def polished(oscillate: ReturnMap, found: Fixed, finer: Loop) -> Polished | Return:
+def polished(oscillate: ReturnMap, found: Fixed, others: Sequence[Loop]) -> Polished | Return:
     """The cycle at the fixed point of one oscillation, over a whole turn; the return that went wrong where one does.
 
     Where the teeth differ the turn is closed by Newton's steps of its own.
@@ -342,16 +347,18 @@ def polished(oscillate: ReturnMap, found: Fixed, finer: Loop) -> Polished | Retu
         if isinstance(unequal, Return):
             return unequal
         whole, error, per = unequal.multiplier, unequal.error, number
-    shift, period_shift = _tolerance_shift(oscillate, amplitude, turn, number, whole, slope.period, finer)
+    shift, period_shift = _tolerance_shift(oscillate, amplitude, turn, number, whole, slope.period, others)
     means = measures(turn.events, oscillate.parts, _start(oscillate, amplitude), turn.time)
     scatter = means.spread / math.sqrt(number) if per == 1 else 0.0
     amplitude_error = CAUTION * (abs(left) + shift) + scatter
+    if oscillate.parts.rounds > MOST_ROUNDS:  # other teeth of the train mesh in each turn
+        amplitude_error += float(np.ptp(np.reshape(means.each, (MOST_ROUNDS, -1)).mean(axis=1)))
     return _with_errors(means, amplitude, turn, amplitude_error, slope, period_shift)._replace(
         multiplier=whole if per > 1 else slope.multiplier, multiplier_error=error, per=per
     )
 
 
-def polished_over(oscillate: ReturnMap, amplitude: float, number: int, finer: Loop) -> Polished | Return:
+def polished_over(oscillate: ReturnMap, amplitude: float, number: int, others: Sequence[Loop]) -> Polished | Return:
     """The cycle of so many oscillations that closes near that amplitude; the return that went wrong where one does."""
     slope, turn = slope_at(oscillate, amplitude, number), oscillate(amplitude, number)
     if isinstance(slope, Return) or turn.trouble:
@@ -363,7 +370,7 @@ def polished_over(oscillate: ReturnMap, amplitude: float, number: int, finer: Lo
     slope = slope_at(oscillate, amplitude, number)
     if isinstance(slope, Return):
         return slope
-    shift, period_shift = _tolerance_shift(oscillate, amplitude, turn, number, slope.multiplier, slope.period, finer)
+    shift, period_shift = _tolerance_shift(oscillate, amplitude, turn, number, slope.multiplier, slope.period, others)
     means = measures(turn.events, oscillate.parts, _start(oscillate, amplitude), turn.time)
     return _with_errors(means, amplitude, turn, CAUTION * (abs(left) + shift), slope, period_shift)._replace(
         multiplier=slope.multiplier, multiplier_error=slope.error, per=number
@@ -399,13 +406,14 @@ def _closed(
 
 
 def _tolerance_shift(
-    oscillate: ReturnMap, amplitude: float, turn: Return, number: int, whole: float, period: float, finer: Loop
+    oscillate: ReturnMap, amplitude: float, turn: Return, number: int, whole: float, period: float, others: Sequence[Loop]
 ) -> tuple[float, float]:
-    """By how much amplitude and period move when the solver is a hundred times as exact: one turn more is enough."""
-    there = ReturnMap(finer, oscillate.parts, oscillate.section)
-    there.period = oscillate.period
-    exact = there(amplitude, number)
-    if turn.trouble or exact.trouble:
-        return np.nan, np.nan
-    shift = (exact.amplitude - turn.amplitude) / (1.0 - whole)
-    return abs(shift), CAUTION * abs((exact.time - turn.time) / number + period * shift)
+    """By how much amplitude and period move at most when the solver is more exact, or less: one turn of each is enough."""
+    shifts = [(0.0, 0.0)]
+    for other in others:
+        there = ReturnMap(other, oscillate.parts, oscillate.section)
+        there.period = oscillate.period
+        got = there(amplitude, number)
+        shift = np.nan if got.trouble else (got.amplitude - turn.amplitude) / (1.0 - whole)
+        shifts.append((abs(shift), CAUTION * abs((got.time - turn.time) / number + period * shift)))
+    return float(np.max([shift for shift, _ in shifts])), float(np.max([shift for _, shift in shifts]))

@@ -22,7 +22,7 @@ from watchsim.scene.errors import SceneError
 from watchsim.scene.forces import Torque
 from watchsim.scene.roles import drive_direction, frequency, keeps_time, nominal_frequency, pitch, roles
 from watchsim.scene.scene import Scene
-from watchsim.scene.teeth import train
+from watchsim.scene.teeth import train, turns_of_a_round
 from watchsim.scene.trains import bonds, rides
 from watchsim.simulation.event_loop import EVENTS_PER_CONTACT, ROWS_PER_STEP, advance
 from watchsim.simulation.options import Options, natural_step, options_for
@@ -39,6 +39,7 @@ class Parts:
 
     coordinate  of the oscillator; `body` its number in the scene; `level` where it stands in balance
     wheel       coordinate of the escape wheel, -1 without one; `sense` the way it is driven; `pitch` None without equal teeth
+    rounds      turns of it after which the same teeth of its train are in mesh; at most so many are looked at
     train       coordinates of all that turns with it, its own included: these go on and on, all others come back
     period      of small swings; `nominal` what the rate is measured against
     has_lever   True where a lever stands between the two
@@ -50,6 +51,7 @@ class Parts:
     body: int
     level: float
     wheel: int
+    rounds: int
     train: tuple[int, ...]
     sense: float
     pitch: float | None
@@ -84,6 +86,7 @@ def parts_of(scene: Scene, compiled: Compiled) -> Parts | None:
         body,
         float(model.coordinates[coordinate].level),
         int(model.bodies[bond.to].first) if bond else -1,
+        turns_of_a_round(scene, found.wheel) if found.wheel else 1,
         tuple({int(model.bodies[bound[names.index(name)].to].first) for name in train(scene, found.wheel)})
         if found.wheel
         else (),

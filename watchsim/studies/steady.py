@@ -9,6 +9,7 @@ from __future__ import annotations
 import dataclasses
 import math
 import time
+from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -24,6 +25,7 @@ from watchsim.studies.attractor import Led, attractor, moved_on
 from watchsim.studies.cycle import Cycle
 from watchsim.studies.return_map import (
     CAUTION,
+    COARSER,
     FINER,
     Fixed,
     Lost,
@@ -176,27 +178,28 @@ def _shot(led: Led, brief: bool, state: State | None) -> Cycle:
     """What the run goes to, and how exactly it is known; `state` where it began, None at the scene's start."""
     oscillate, found = led.oscillate, led.found
     loop, parts = oscillate.loop, oscillate.parts
-    finer = Loop(loop.scene, max(FINER * loop.tolerance, FINEST_TOLERANCE), like=loop)
+    exact_to = (max(FINER * loop.tolerance, FINEST_TOLERANCE), min(COARSER * loop.tolerance, COARSEST_TOLERANCE))
+    others = tuple(Loop(loop.scene, tolerance, like=loop) for tolerance in exact_to)
     if isinstance(found, Lost):
-        again = _after_several(oscillate, found.amplitude, finer) if found.trouble == UNSETTLED else None
+        again = _after_several(oscillate, found.amplitude, others) if found.trouble == UNSETTLED else None
         return again or _by_run(loop, parts, NO_REPEAT, led.time + AFTERWARDS * parts.period, state)
     if brief and abs(found.slope) < 1.0:
         return _told(loop, parts, glanced(oscillate, found))
-    exact = _closed(oscillate, found, finer)
-    loop.simulated += finer.simulated
+    exact = _closed(oscillate, found, others)
+    loop.simulated += sum(other.simulated for other in others)
     if isinstance(exact, Return):
         return _by_run(loop, parts, NO_REPEAT, led.time + FEWEST * parts.period, state)
     if exact.multiplier is None or not abs(exact.multiplier) < 1.0:
-        return _after_several(oscillate, (1.0 + ASIDE) * found.amplitude, finer) or _unstable(loop, parts, exact)
+        return _after_several(oscillate, (1.0 + ASIDE) * found.amplitude, others) or _unstable(loop, parts, exact)
     return _told(loop, parts, exact)
 
 
-def _closed(oscillate: ReturnMap, found: Fixed, finer: Loop) -> Polished | Return:
+def _closed(oscillate: ReturnMap, found: Fixed, others: Sequence[Loop]) -> Polished | Return:
     """The cycle over a whole turn of the wheel, after which all that stands still has come back to its place.
 
     A remontoir is wound once in several oscillations: the section moves on by a turn until nothing depends on where it began.
     """
-    exact, moved = polished(oscillate, found, finer), 0.0
+    exact, moved = polished(oscillate, found, others), 0.0
     for _ in range(TURNS):
         section = None if isinstance(exact, Return) else moved_on(oscillate, exact.turn)
         if isinstance(exact, Return) or section is None:
@@ -205,19 +208,19 @@ def _closed(oscillate: ReturnMap, found: Fixed, finer: Loop) -> Polished | Retur
         again = fixed_point(oscillate, exact.amplitude)
         if isinstance(again, Lost):
             break
-        before, exact = exact, polished(oscillate, again, finer)
+        before, exact = exact, polished(oscillate, again, others)
         if not isinstance(exact, Return):
             moved = abs(exact.means.amplitude - before.means.amplitude)
     return exact if isinstance(exact, Return) else exact.moved_by(CAUTION * moved)
 
 
-def _after_several(oscillate: ReturnMap, amplitude: float, finer: Loop) -> Cycle | None:
+def _after_several(oscillate: ReturnMap, amplitude: float, others: Sequence[Loop]) -> Cycle | None:
     """A stable cycle of several oscillations that the orbit from there runs to; None without one."""
     found = repeats(oscillate, amplitude)
     if found is None:
         return None
     loop, number = oscillate.loop, found[0]
-    exact = polished_over(oscillate, found[1], number, finer)
+    exact = polished_over(oscillate, found[1], number, others)
     if isinstance(exact, Return) or exact.multiplier is None or not abs(exact.multiplier) < 1.0:
         return None
     if abs(exact.amplitude - found[1]) > ASIDE * ASIDE * found[1]:
