@@ -22,6 +22,7 @@ from watchsim.construction.design import Design
 from watchsim.drawing.write import Sheet
 from watchsim.scene.designed import chosen, designed
 from watchsim.scene.load import from_mapping
+from watchsim.scene.read_tolerances import usual
 from watchsim.scene.scene import Scene
 from watchsim.storage.write import write_folder
 
@@ -48,7 +49,7 @@ class Drawn:
     def files(self) -> dict[str, bytes]:
         """Name -> content of everything that `write` writes."""
         drawings = {f"{name}.dxf": sheet.dxf() for name, sheet in self.sheets.items()}
-        return {**drawings, SCENE: self.design.scene(self.values).encode()}
+        return {**drawings, SCENE: (self.design.scene(self.values) + usual(self.scene())).encode()}
 
     def scene(self) -> Scene:
         """The scene, ready to be simulated; its dimensions can be changed: scene.set("design.lock", "2°")."""

@@ -17,8 +17,8 @@ FIRST = "swiss_lever"  # listed first, as the one that examples use; all others 
 
 
 @cache
-def _own() -> tuple[str, ...]:
-    """Names of the modules whose source has a line that begins with DESIGN: none is imported for that."""
+def own() -> tuple[str, ...]:
+    """Names of the modules of this package whose source has a line that begins with DESIGN: none is imported for that."""
     found = []
     for one in pkgutil.iter_modules(construction.__path__):
         source = Path(construction.__path__[0], f"{one.name}.py").read_text(encoding="utf-8")
@@ -29,7 +29,7 @@ def _own() -> tuple[str, ...]:
 
 def _others() -> dict[str, EntryPoint]:
     """Those of installed packages; a name of ours stays ours."""
-    return {one.name: one for one in entry_points(group=GROUP) if one.name not in _own()}
+    return {one.name: one for one in entry_points(group=GROUP) if one.name not in own()}
 
 
 class BrokenDesign(ImportError):
@@ -41,14 +41,14 @@ class BrokenDesign(ImportError):
 
 def names() -> tuple[str, ...]:
     """Ours first, then those of other packages by the alphabet."""
-    return (*_own(), *sorted(_others()))
+    return (*own(), *sorted(_others()))
 
 
 def design(name: str) -> Design:
     """The design of that name; KeyError if there is none, BrokenDesign if that of another package does not load."""
-    if name in _own():
-        own: Design = importlib.import_module(f"{construction.__name__}.{name}").DESIGN
-        return own
+    if name in own():
+        ours: Design = importlib.import_module(f"{construction.__name__}.{name}").DESIGN
+        return ours
     point = _others()[name]
     try:
         found = point.load()

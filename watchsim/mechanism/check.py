@@ -21,7 +21,7 @@ from watchsim.mechanism.contacts import PairCount, pair_lines, pairs_entry
 from watchsim.mechanism.overlap import overlaps
 from watchsim.mechanism.words import force_lines, law_words, length, place, turned
 from watchsim.scene.roles import frequency, keeps_time, loads, oscillators, partners, roles
-from watchsim.scene.scene import Body, Scene
+from watchsim.scene.scene import Body, Scene, Tolerance
 from watchsim.scene.solids import HAIRSPRING, LYING, PLATE, UPRIGHT, Solid, total
 from watchsim.scene.trains import ON_PIVOT, Weighed, is_still
 from watchsim.units import metric, show, to
@@ -163,6 +163,7 @@ def check_report(scene: Scene, pairs: Sequence[PairCount]) -> dict[str, Any]:
         "theory": {"frequency_hz": hertz, "vph": None if hertz is None else 7200.0 * hertz},
         "pairs": pairs_entry(pairs),
         "statics": {},
+        "tolerances": [_tolerance_entry(one) for one in scene.tolerances],
         "findings": [finding.as_dict() for finding in (*scene.findings, *_overlap_findings(scene), *notes(scene))],
     }
 
@@ -172,9 +173,26 @@ def check_text(report: Mapping[str, Any], scene: Scene, function: Iterable[str] 
     parts = [scene.title, *_body_lines(scene), *force_lines(scene)]
     if scene.contacts and all(finding["code"] != "overlap" for finding in report["findings"]):
         parts.append("  nothing overlaps at the start, among all pairs that may touch")
-    parts += [*pair_lines(report["pairs"]), *function]
+    parts += [*pair_lines(report["pairs"]), *function, *_tolerance_lines(scene)]
     parts += [f"{finding['severity']}: {finding['message']}. {finding['fix']}".rstrip() for finding in report["findings"]]
     return "\n".join(parts)
+
+
+def _tolerance_entry(one: Tolerance) -> dict[str, Any]:
+    """In SI: the nominal value and the deviations that are the limits."""
+    kind = {"unit": one.dimension.si, "distribution": one.shape, "sigma": one.sigma or None, "group": one.group or None}
+    return {"key": one.key, "nominal": one.nominal, "low": one.low, "high": one.high, **kind, "each": one.count}
+
+
+def _tolerance_lines(scene: Scene) -> Iterator[str]:
+    if scene.tolerances:
+        yield "  tolerances:"
+    width = max((len(one.key) for one in scene.tolerances), default=0)
+    values = [one.shown(one.nominal) for one in scene.tolerances]
+    for one, value in zip(scene.tolerances, values, strict=True):
+        yield f"      {one.key:{width}}  {value:>{max(map(len, values))}}  {one.words}"
+    for pair in scene.correlated:
+        yield f"      {' and '.join(pair.between)}: correlated by {pair.coefficient:g}"
 
 
 def _body_entry(body: Body) -> dict[str, Any]:

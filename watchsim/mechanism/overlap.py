@@ -295,6 +295,9 @@ def _meetings(scene: Scene) -> Iterator[Overlap]:
                     yield met
 
 
+LENS = 3  # points of an arc and its chord seen from afar: without area, and near to nothing
+
+
 class _Layer:
     """The outlines of one layer where they stand at the start: their chords, and open faces."""
 
@@ -319,9 +322,9 @@ class _Layer:
             at += len(coarse) - 1
             points, error = refined_points(loop, COARSE, marked, DEVIATION) if marked.any() else (None, 0.0)
             points, worst = coarse if points is None else placed(points, self.pose), max(worst, error)
-            if loop.closed:
+            if loop.closed and len(points) > LENS:
                 rings.append((points, loop.hole))
-            else:
+            elif not loop.closed:
                 faces.append((points, loop.moved(self.pose[2], self.pose[:2]).edges))
         return shapely.union_all(material(rings)), faces, worst
 

@@ -174,17 +174,17 @@ def with_design(written: Written, faults: Faults) -> tuple[dict[str, Any], Made]
 
 def designed(of: object, faults: Faults | None = None) -> Design:
     """The design of that name; SceneError where there is none, or where that of another package does not load."""
-    all_known = f"Known: {', '.join(registry.names())}"
-    if isinstance(of, str) and of in registry.names():
+    if isinstance(of, str) and (of in registry.own() or of in registry.names()):  # the others are looked for, which takes long
         try:
             return registry.design(of)
         except registry.BrokenDesign as error:
             said = str(error)
     elif of is None:
-        said = f"missing. {all_known}"
+        said = f"missing. Known: {', '.join(registry.names())}"
     else:
         hint = nearest(str(of), registry.names())
-        said = f"there is no such design. {hint if hint.startswith('Did') else all_known}"
+        known = f"Known: {', '.join(registry.names())}"
+        said = f"there is no such design. {hint if hint.startswith('Did') else known}"
     if faults is None:
         raise SceneError([Fault(str(of), said, place="design")])
     faults.add(f"{DESIGN}.of", said, "" if of is None else shown(of))

@@ -17,7 +17,8 @@ from typing import Any
 
 import numpy as np
 
-from watchsim.geometry.variation import fold
+from watchsim.geometry.loops import Loop
+from watchsim.geometry.variation import fold, grown
 from watchsim.scene.assign import dimension_of
 from watchsim.scene.errors import Faults
 from watchsim.scene.keys import TEETH, TOLERANCE, key_at, nearest
@@ -313,3 +314,78 @@ def matrix(tolerances: Sequence[Tolerance], correlated: Sequence[Correlation]) -
         i, j = (numbers[key] for key in one.between)
         whole[i, j] = whole[j, i] = one.coefficient
     return whole, float(np.linalg.eigvalsh(whole)[0]) if len(whole) else 1.0
+
+
+# Which tolerances are usual in the trade? By kind of dimension, for scenes that are started anew.
+
+GRADE_4 = "1.5 µm either side: grade 4 of ISO 286-1 up to 3 mm; escape wheels by lithography keep 1 µm (grand-seiko.com, 9S)"
+GRADE_7 = "5 µm either side: grade 7 of ISO 286-1 up to 3 mm"
+GUESSED = "estimate: not published"
+OUTLINE, HOLE = 1.5e-6, "±5 µm"
+FRICTION, SHARE = 0.03, 0.1  # of friction; of torque and quality factor
+
+
+def usual(scene: Scene) -> str:
+    """The text of a [tolerances] table with usual values for what a scene holds, each kind with its source."""
+    kinds: list[tuple[str, list[str]]] = [
+        (f"outlines grown or shrunk, {GRADE_4}", _outlines(scene)),
+        (
+            f"places of pivots, {GRADE_7}",
+            [_line(f"bodies.{name}.position.{i}", HOLE) for name in _pivoted(scene) for i in (0, 1)],
+        ),
+        (f"friction, drawn together, {GUESSED}", _frictions(scene)),
+        (f"torque, {100 * SHARE:g} % either side, {GUESSED}", _shares(scene, "torques", "value")),
+        (f"quality factor, {100 * SHARE:g} % either side, {GUESSED}", _shares(scene, "damping", "q_factor")),
+    ]
+    lines = [line for words, entries in kinds if entries for line in (f"# {words}", *entries)]
+    return (
+        "\n".join(["", "[tolerances]                         # watchsim tolerance draws watches within them", *lines, ""])
+        if lines
+        else ""
+    )
+
+
+def _line(key: str, limits: str, more: str = "") -> str:
+    return f'"{key}" = {{ limits = "{limits}"{more} }}'
+
+
+def _pivoted(scene: Scene) -> list[str]:
+    return [body.name for body in scene.bodies if body.motion == "pivot" and body.on is None and body.loops]
+
+
+def _outlines(scene: Scene) -> list[str]:
+    """Of layers that can be touched and are not too finely rounded."""
+    touching = {(side.body, side.layer) for one in scene.contacts for side in one.sides}
+    found = []
+    for body in scene.bodies:
+        for layer in body.layers if "drawing" in scene.source["bodies"][body.name] else ():
+            mine = [loop for loop in body.loops if loop.layer == layer]
+            if touching & {(body.name, layer), (body.name, None)} and all(_can_shrink(loop) for loop in mine):
+                found.append(_line(f"{body.name}.{layer}.offset", f"±{1e6 * OUTLINE:g} µm"))
+    return found
+
+
+def _can_shrink(loop: Loop) -> bool:
+    try:
+        grown(grown(loop, -2.0 * OUTLINE), 4.0 * OUTLINE)
+    except ValueError:
+        return False
+    return True
+
+
+def _frictions(scene: Scene) -> list[str]:
+    numbers = [i for i, one in enumerate(scene.contacts) if one.friction > FRICTION]
+    return [_line(f"contacts.{i}.friction", f"±{FRICTION:g}", ', group = "oil"') for i in numbers]
+
+
+def _shares(scene: Scene, section: str, key: str) -> list[str]:
+    """A share of what each entry of a section holds, where it is a number."""
+    found = []
+    for i, entry in enumerate(scene.source.get(section, [])):
+        try:
+            number, unit = split(entry[key])
+        except (KeyError, UnitError):
+            continue
+        if float(number):
+            found.append(_line(f"{section}.{i}.{key}", f"±{SHARE * abs(float(number)):.4g} {unit}".strip()))
+    return found

@@ -19,7 +19,7 @@ from watchsim.geometry.primitives import Point
 from watchsim.scene.errors import Fault, SceneError
 from watchsim.scene.forces import Contact, Damping, LineSpring, Spring, Torque
 from watchsim.scene.solids import Solid
-from watchsim.units import LENGTH, Dimension, known_unit
+from watchsim.units import LENGTH, Dimension, known_unit, show
 
 # How much of a run is kept?
 
@@ -281,6 +281,11 @@ class Tolerance:
         """In which people read it."""
         return ("µm" if self.dimension is LENGTH else self.dimension.usual[1]) if self.dimension.si else ""
 
+    def shown(self, value: float) -> str:
+        """A value of the dimension as people read it; lengths that are no errors in millimetres."""
+        unit = "mm" if self.unit == "µm" and abs(self.nominal) > 1e-4 else self.unit
+        return show(value, unit, 7).replace("-", "−")
+
     @property
     def words(self) -> str:
         """ "±5 µm, normal, Cpk 1.33"."""
@@ -312,7 +317,7 @@ class Written:
 
 @dataclass(frozen=True)
 class Scene:
-    """A mechanism in SI units, ready to be compiled. Two scenes are equal when all but the last six fields are.
+    """A mechanism in SI units, ready to be compiled. Two scenes are equal when all but the last eight fields are.
 
     bodies, springs, torques, damping, contacts  what it consists of
     gravity         (x, y), m/s²
@@ -348,8 +353,8 @@ class Scene:
     gears: tuple[Gear, ...] = ()
     rigid_gears: tuple[Gear, ...] = ()
     line_springs: tuple[LineSpring, ...] = ()
-    tolerances: tuple[Tolerance, ...] = ()
-    correlated: tuple[Correlation, ...] = ()
+    tolerances: tuple[Tolerance, ...] = field(default=(), compare=False)
+    correlated: tuple[Correlation, ...] = field(default=(), compare=False)
     path: Path | None = field(default=None, compare=False)
     source: dict[str, Any] = field(default_factory=dict, repr=False, compare=False)
     findings: tuple[Finding, ...] = field(default=(), repr=False, compare=False)

@@ -125,13 +125,15 @@ def freed_start(compiled: Compiled, options: Options) -> NDArray[np.float64] | N
     """Coordinates near the scene's start at which nothing overlaps; None where bodies overlap by more than a little."""
     ids = np.unique(compiled.model.near)
     model = compiled.model._replace(contacts=frozen(compiled.model.contacts[ids]))
+    found = None
     for near in DEEPEST:
         if not len(overlapping_rows(model, kinematics_at(model, compiled.q), options, near, options.behind)):
             continue
         q = taken_back_from(model, compiled.q, options, near)
-        if q is not None:
+        if q is not None and not len(overlapping_rows(model, kinematics_at(model, q), options, DEEPEST[-1], options.behind)):
             return q
-    return None
+        found = q if found is None else found
+    return found
 
 
 # What `simulate` does around the compiled loop, reduced to what a return map needs: states that can be copied, changed and

@@ -24,6 +24,7 @@ from watchsim.scene.toml import toml_text
 from watchsim.storage.write import write_file
 from watchsim.studies.point import Row
 from watchsim.studies.sampling import SEQUENCES
+from watchsim.studies.section import Loop
 from watchsim.studies.sweep import Progress, computed, seconds
 from watchsim.studies.tolerance_plan import Plan, plan_of
 from watchsim.studies.tolerance_result import Linear, Samples, ToleranceStudy, analysed
@@ -234,6 +235,10 @@ def sample_scene(folder: str | Path, number: int) -> Scene:
         most = max(rows, default=0)
         raise ValueError(f"{folder} holds no sample {number}: its samples are numbered from 0 to {most}")
     scene = changed(plan.question.scene, plan.changes([number])[0])
+    loop = Loop(scene, scene.tolerance)
+    free = loop.begin().q  # a part that was moved a little may overlap where it starts
+    turning = [body.name for body in scene.bodies if body.motion == "pivot" and body.prescribed is None and body.on is None]
+    scene = changed(scene, {f"bodies.{name}.angle": float(free[loop.compiled.slices[name].start]) for name in turning})
     return dataclasses.replace(scene, title=f"{scene.title}, sample {number}", path=None)
 
 

@@ -438,7 +438,7 @@ def _message(samples: Samples, share: Share) -> str:
         one = space.tolerances[space.draws[j].members[0]]
         if abs(away[j]) * np.sqrt(number) > 3.0:
             size = abs(differ[j]) / known_unit(one.unit).factor
-            side = "larger" if away[j] > 0.0 else "smaller"
+            side = "larger" if (away[j] > 0.0) == (one.nominal >= 0.0) else "smaller"  # of a torque to the left its magnitude
             gap = "" if one.unit in ("", "°") else " "
             told.append(f"{space.draws[j].name} is {size:.2g}{gap}{one.unit} {side}")
     how = f"; in these, on average, {' and '.join(told)} than in the others" if told else ""

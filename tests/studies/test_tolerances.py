@@ -1,0 +1,218 @@
+"""Is a study of tolerances the same study wherever and in whatever order its samples are computed?"""
+
+from __future__ import annotations
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+import watchsim as ws
+from watchsim.cli import main
+from watchsim.scene.load import changed
+from watchsim.studies.tolerance import finished, sample_scene
+
+TABLE = """
+[tolerances]
+"torques.0.value" = { limits = "±0.5 µN·m" }
+"springs.0.stiffness" = { limits = "±0.01 µN·m/rad", distribution = "normal", cpk = 1.0 }
+"contacts.0.friction" = { limits = "±0.03", group = "oil" }
+"contacts.1.friction" = { limits = "±0.03", group = "oil" }
+"bodies.balance.inertia" = { limits = "±0.05 mg·cm²" }
+"""
+EXPECTED = """
+[expect]
+"amplitude" = { min = "%s" }
+"""
+
+
+@pytest.fixture(scope="module")
+def desk(tmp_path_factory):
+    """A bench lever whose tolerances change nothing of its outlines, so that a sample takes a few hundredths of a second."""
+    folder = tmp_path_factory.mktemp("tolerances")
+    source = ws.profiles_dir() / "bench_lever"
+    for path in source.iterdir():
+        if path.suffix == ".dxf":
+            (folder / path.name).write_bytes(path.read_bytes())
+    text = (source / "scene.toml").read_text(encoding="utf-8").partition("[expect]")[0]
+    middle = ws.steady(source).amplitude_deg
+    (folder / "scene.toml").write_text(text + TABLE + EXPECTED % f"{middle - 2.0:.4f}°", encoding="utf-8")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def whole(desk):
+    return ws.tolerance(desk, 48, folder=desk / "whole")
+
+
+def results(study):
+    return {number: {key: value for key, value in row.items() if key != "seconds"} for number, row in study.rows.items()}
+
+
+def test_the_study_says_what_json_promises(whole):
+    numbers = whole.numbers()
+    assert numbers["samples"] == 48
+    assert 0 < numbers["good"] < 48
+    assert numbers["yield"] == numbers["good"] / 48
+    assert numbers["yield_low"] <= numbers["yield"] <= numbers["yield_high"]
+    assert sum(numbers["failures"].values()) == 48 - numbers["good"]
+    spread = numbers["outputs"]["amplitude_deg"]
+    assert {"mean", "sigma", "quantiles", "cp", "cpk"} <= set(spread)
+    assert {one["key"] for one in numbers["contributions"]["amplitude_deg"]} == {
+        *("torques.0.value", "springs.0.stiffness", "oil", "bodies.balance.inertia")
+    }
+    assert numbers["worst"][0]["why"].startswith("amplitude too low")
+    assert "torques.0.value" in whole.message
+    json.dumps(numbers, allow_nan=False)
+
+
+def test_the_linear_prediction_is_that_of_the_sensitivities(desk, whole):
+    """Its variance is the sum of squares of the derivatives by the standard deviations; in this range to 5 %."""
+    keys = ["torques.0.value", "springs.0.stiffness", "bodies.balance.inertia", "contacts.0.friction", "contacts.1.friction"]
+    found = ws.sensitivity(desk, keys)
+    slopes = {one.quantity.key: one.by for one in found.effects}
+    spreads = {"torques.0.value": 0.5e-6 / math.sqrt(3.0), "springs.0.stiffness": 0.01e-6 / 3.0}
+    spreads["bodies.balance.inertia"] = 0.05e-10 / math.sqrt(3.0)
+    for column in ("amplitude_deg", "rate_s_per_d"):
+        parts = [slopes[key][column].value * spread for key, spread in spreads.items()]
+        oil = sum(slopes[f"contacts.{i}.friction"][column].value for i in (0, 1)) * 0.03 / math.sqrt(3.0)
+        assert whole.outputs[column].linear_sigma == pytest.approx(math.sqrt(sum(p * p for p in parts) + oil * oil), rel=0.05)
+
+
+@pytest.mark.slow
+def test_shards_in_any_order_and_a_resumed_study_have_the_same_bits(desk, whole):
+    for i in (2, 1, 3):
+        ws.tolerance(desk, 48, shard=(i, 3), folder=desk / f"shard{i}")
+    merged = ws.merge([desk / f"shard{i}" for i in (3, 1, 2)], desk / "merged")
+    assert merged.whole
+    assert results(merged) == results(whole)
+    ws.tolerance(desk, 16, folder=desk / "resumed")
+    path = desk / "resumed" / "rows.jsonl"
+    path.write_bytes(path.read_bytes()[:-40])  # as if the power had failed while the last row was written
+    again = ws.tolerance(desk, 48, folder=desk / "resumed", resume=True)
+    assert results(again) == results(whole)
+    assert again.numbers()["contributions"] == whole.numbers()["contributions"]
+
+
+@pytest.mark.slow
+def test_two_processes_have_the_same_bits(desk, whole):
+    assert results(ws.tolerance(desk, 48, workers=2)) == results(whole)
+
+
+def test_a_sample_can_be_replayed(desk, whole, capsys):
+    number = whole.worst[0]["sample"]
+    cycle = ws.steady(sample_scene(desk / "whole", number))
+    assert cycle.amplitude_deg == pytest.approx(whole.rows[number]["amplitude_deg"], abs=1e-6)
+    assert finished(desk / "whole").yield_ == whole.yield_
+    with pytest.raises(ValueError, match="no sample 48"):
+        sample_scene(desk / "whole", 48)
+    status = main(
+        ["run", str(desk / "whole"), "--sample", str(number), "--duration", "0.2 s", "--no-plots", "-o", str(desk / "run")]
+    )
+    assert status in (0, 1)
+    assert f"sample {number}" in capsys.readouterr().out
+
+
+@pytest.mark.slow
+def test_a_study_stops_once_the_yield_is_known_closely_enough(desk):
+    study = ws.tolerance(desk, 4096, until="±45 %")
+    assert study.samples == 256
+    assert 0.5 * (study.yield_high - study.yield_low) <= 0.45
+
+
+def test_shards_of_another_study_are_refused(desk, whole):
+    ws.tolerance(desk, 16, seed=1, shard=(1, 16), folder=desk / "other")
+    with pytest.raises(ValueError, match="seed differ"):
+        ws.merge([desk / "whole", desk / "other"])
+    with pytest.raises(ValueError, match="another study: seed was 0, now 1"):
+        ws.tolerance(desk, 16, seed=1, folder=desk / "whole", resume=True)
+    with pytest.raises(ValueError, match="holds no study"):
+        ws.merge([desk])
+
+
+def test_the_command_writes_numbers_table_plot_and_page(desk, whole, capsys):
+    folder = desk / "command"
+    assert main(["tolerance", str(desk), "--samples", "48", "--workers", "1", "-o", str(folder), "--json"]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    assert printed["yield"] == whole.yield_
+    lines = (folder / "tolerance.csv").read_text(encoding="utf-8").splitlines()
+    assert len(lines) == 49
+    values = dict(zip(lines[0].split(","), lines[1].split(","), strict=True))
+    assert float(values["contacts.0.friction"]) == float(values["contacts.1.friction"])
+    assert float(values["amplitude_deg"]) == whole.rows[0]["amplitude_deg"]
+    assert (folder / "tolerance.png").stat().st_size > 10_000
+    assert main(["report", str(folder)]) == 0
+    page = (folder / "tolerance.html").read_text(encoding="utf-8")
+    assert whole.message in page
+    capsys.readouterr()
+    assert main(["check", str(desk), "--json"]) == 0
+    assert len(json.loads(capsys.readouterr().out)["tolerances"]) == 5
+
+
+FAULTS = [
+    ('"torques.0.valu" = { limits = "±1 µN·m" }', "there is no dimension of that name"),
+    ('"torques.0.value" = { limits = "+3/+1 µN·m" }', "exclude the nominal value"),
+    ('"torques.0.value" = { limits = "±1 mm" }', "is a length"),
+    ('"torques.0.value" = { limits = "h6" }', "a fit class is for lengths"),
+    ('"torques.0.value" = { limits = "±1 µN·m", cpk = 1.0 }', 'belongs to distribution = "normal"'),
+    ('"torques.0.value" = { limits = "±1 µN·m", distribution = "gauss" }', "not one of uniform"),
+    ('"torques.0.value" = { limits = "±1 µN·m", each = true }', "one value for each tooth"),
+    ('"torques.0.value" = { distribution = "file", file = "none.txt" }', "cannot be read"),
+    ('"torques.0.value" = { limit = "±1 µN·m" }', 'Did you mean "limits"?'),
+    ('"balance.BODY.offset" = { limits = "±1 µm", correlated = { "none" = 0.5 } }', "is no other tolerance"),
+]
+
+
+def test_all_faults_are_reported_at_once(desk):
+    base = (desk / "scene.toml").read_text(encoding="utf-8").partition("[tolerances]")[0]
+    for line, message in FAULTS:
+        (desk / "faulty.toml").write_text(f"{base}[tolerances]\n{line}\n", encoding="utf-8")
+        with pytest.raises(ws.SceneError, match=message.replace("?", r"\?")):
+            ws.load(desk / "faulty.toml")
+    three = [
+        '"contacts.0.friction" = { limits = "±0.1", correlated = { "contacts.1.friction" = 0.9, "torques.0.value" = 0.9 } }',
+        '"contacts.1.friction" = { limits = "±0.1", correlated = { "torques.0.value" = -0.9 } }',
+        '"torques.0.value" = { limits = "±1 µN·m" }',
+        '"springs.0.rest" = { limits = "±0°" }',
+    ]
+    (desk / "faulty.toml").write_text("\n".join([f"{base}[tolerances]", *three]), encoding="utf-8")
+    with pytest.raises(ws.SceneError) as caught:
+        ws.load(desk / "faulty.toml")
+    assert ["not positive definite" in str(fault) for fault in caught.value.faults].count(True) == 1
+    assert ["leave no width" in str(fault) for fault in caught.value.faults].count(True) == 1
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--samples", "0", "--until", "2 mm", "--shard", "4/3"], ("samples", "until", "shard")),
+        (["--samples", "1000000000"], ("from 16 to 1000000",)),
+        (["--seed", "-1", "--workers", "0"], ("--seed -1", "--workers 0")),
+    ],
+)
+def test_options_that_cannot_be_are_refused_together(desk, capsys, options, words):
+    assert main(["tolerance", str(desk), *options, "-o", str(desk / "never")]) == 2
+    said = capsys.readouterr().err
+    assert all(word in said for word in words)
+    assert not (desk / "never").exists()
+
+
+def test_teeth_grown_and_moved_are_where_they_are_expected():
+    """Of a ratchet wheel: the offset moves every edge by itself, a pitch error one tooth, and both leave the pivot alone."""
+    scene = ws.designs.swiss_lever().scene()
+    wheel = scene.body("wheel").loops[1]
+    out = changed(scene, {"bodies.wheel.adjust.TEETH.offset": 2e-6}).body("wheel").loops[1]
+    for before, after in zip(wheel.edges, out.edges, strict=True):
+        (x, y), (tx, ty) = before.point(0.5), before.tangent(0.5)
+        ax, ay = after.point(0.5)
+        assert (ax - x) * ty - (ay - y) * tx == pytest.approx(2e-6, rel=1e-3)
+    pitch = np.zeros(15)
+    pitch[0] = 3e-6
+    moved = changed(scene, {"bodies.wheel.teeth.pitch": pitch.tolist()}).body("wheel").loops[1]
+    ends = [(np.array(a.start), np.array(b.start)) for a, b in zip(wheel.edges, moved.edges, strict=True)]
+    tips = [float(np.linalg.norm(b - a)) for a, b in ends if np.linalg.norm(a) > 2.3e-3]
+    assert max(tips) == pytest.approx(3e-6, rel=0.02)
+    assert sum(tip > 1e-9 for tip in tips) * 15 == pytest.approx(len(tips), abs=15)
+    taken = changed(scene, {"bodies.lever.play": 8e-6, "bodies.lever.side": 0.5 * math.pi}).body("lever").position
+    assert taken[1] - scene.body("lever").position[1] == pytest.approx(4e-6, rel=1e-9)

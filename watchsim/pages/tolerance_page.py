@@ -1,0 +1,92 @@
+"""How does a study of tolerances become one page that can be sent?"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from watchsim.pages.html import Content, Markup, element, image, joined, section, table
+from watchsim.pages.report_page import check_page
+from watchsim.render.style import MM, small_png
+from watchsim.render.tolerance_plot import plot_tolerance
+from watchsim.storage.write import write_file
+from watchsim.studies.point import OUTPUTS
+from watchsim.studies.tolerance_result import ToleranceStudy
+
+DOTS = 1400  # across the picture
+MOST = 12  # contributions in a table
+LOOK = Markup(
+    "body{font:15px/1.45 system-ui,sans-serif;color:#23272c;background:#f6f3ed}"
+    "body{max-width:1100px;margin:24px auto;padding:0 16px}"
+    "h1{font-size:22px}h2{font-size:17px;margin-top:28px}table{border-collapse:collapse;font-size:14px}"
+    "th,td{padding:3px 10px;text-align:right;border-bottom:1px solid #ddd8ce}th:first-child,td:first-child{text-align:left}"
+    "caption{text-align:left;color:#5b6168;padding-bottom:4px}.scroll{overflow-x:auto}img{max-width:100%;height:auto}"
+    ".yield{font-size:19px}code{background:#ece7dd;padding:1px 4px}"
+)
+
+
+def tolerance_page(study: ToleranceStudy, path: str | Path) -> Path:
+    """Write the study as one self-contained HTML file; ValueError for a path with another ending, OSError where it fails."""
+    target = check_page(path)
+    figure = plot_tolerance(study)
+    picture = image(small_png(figure, DOTS), f"plots of the study: {study.message}", round(figure.get_figwidth() / MM * 6))
+    parts = [
+        element("h1", study.title),
+        element("p", f"{study.message}.", class_="yield"),
+        _yields(study),
+        section("spread", "What the watches do", _spread(study), picture),
+        section("tolerances", "What they are made to", _tolerances(study)),
+        section("contributions", "Which dimension decides it", *_contributions(study)),
+        section("worst", "The worst of them", _worst(study)),
+    ]
+    head = element("head", element("meta", charset="utf-8"), element("title", study.title), element("style", LOOK))
+    text = joined([Markup("<!doctype html>"), element("html", head, element("body", *parts), lang="en")])
+    write_file(target, lambda place: place.write_bytes(text.encode("utf-8", "replace")), "the page")
+    return target
+
+
+def _number(value: float | None) -> str:
+    return "" if value is None else f"{value:.4g}".replace("-", "−")
+
+
+def _percent(value: float) -> str:
+    return f"{100.0 * value:.4g} %"
+
+
+def _yields(study: ToleranceStudy) -> Markup:
+    rows = [(name, _percent(one.value), _percent(one.low), _percent(one.high), one.by) for name, one in study.shares.items()]
+    return table(("", "share", "from", "to", "by"), rows, f"{study.good} of {study.samples} samples are good")
+
+
+def _spread(study: ToleranceStudy) -> Markup:
+    labels = {one.column: f"{one.label} ({one.unit})" if one.unit else one.label for one in OUTPUTS.values()}
+    rows = []
+    for column, one in study.outputs.items():
+        ends = [one.quantiles[q] for q in ("0.00135", "0.5", "0.99865")]
+        linear = (one.linear_sigma, one.linear_low, one.linear_high)
+        rows.append((labels[column], *map(_number, (one.mean, one.sigma, *ends, one.cp, one.cpk, *linear)), one.remark))
+    head = ("", "mean", "σ", "0.1 %", "median", "99.9 %", "Cp", "Cpk", "linear σ", "worst case from", "to", "")
+    return table(
+        head, rows, "mean and scatter of all samples, and what the linear prediction (root of squares, worst case) says"
+    )
+
+
+def _tolerances(study: ToleranceStudy) -> Markup:
+    rows = [(one.key, one.shown(one.nominal), one.words) for one in study.plan.scene.tolerances]
+    return table(("", "nominal", "limits"), rows, "the dimensions that are drawn", numeric=False)
+
+
+def _contributions(study: ToleranceStudy) -> list[Content]:
+    found: list[Content] = []
+    for name, each in study.contributions.items():
+        rows = [
+            (one.key, *(_number(value) for value in (one.first, one.total, one.total_error, one.linear, one.rank)))
+            for one in each[:MOST]
+        ]
+        known = f", {_percent(study.explained[name])} of the variance explained" if name in study.explained else ""
+        found.append(table(("", "alone", "total", "± ", "linear", "rank"), rows, f"{name}{known}"))
+    return found
+
+
+def _worst(study: ToleranceStudy) -> Markup:
+    rows = [(str(one["sample"]), one["why"]) for one in study.worst]
+    return table(("sample", "what is wrong"), rows, "watchsim run STUDY --sample N --movie shows one of them", numeric=False)
