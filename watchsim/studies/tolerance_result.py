@@ -109,14 +109,17 @@ class ToleranceStudy:
 
     @property
     def yield_(self) -> float:
+        """The share of good watches."""
         return self.shares["yield"].value
 
     @property
     def yield_low(self) -> float:
+        """The lower end of its interval."""
         return self.shares["yield"].low
 
     @property
     def yield_high(self) -> float:
+        """The upper end of its interval."""
         return self.shares["yield"].high
 
     def __repr__(self) -> str:
