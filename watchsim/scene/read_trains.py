@@ -13,7 +13,7 @@ from watchsim.scene.errors import Faults
 from watchsim.scene.forces import Contact, Damping, Mainspring, Torque
 from watchsim.scene.keys import GEAR, TRAIN, nearest
 from watchsim.scene.scene import Body, Gear, Geared
-from watchsim.scene.trains import CARRIED, ON_PIVOT, Ride, Weighed, note_gears, reached, rides, weigh
+from watchsim.scene.trains import CARRIED, ON_PIVOT, Ride, Weighed, in_silence, note_gears, reached, rides, weigh
 from watchsim.scene.values import NAN, Table, listed
 from watchsim.units import NUMBER, PER_LENGTH, TRAVEL_PER_TURN, Dimension
 
@@ -48,21 +48,18 @@ def read_gears(mapping: Mapping[str, Any], bodies: tuple[Body, ...], gravity: Po
         return ReadGears(bodies, (), ())
     known = {body.name: body for body in bodies}
     read = [(table, gear) for table in tables if (gear := _gear(table, known)) is not None]
-    hung = rides(bodies, _in_silence)
-    weighed = weigh(bodies, hung, _in_silence)
+    hung = rides(bodies, in_silence)
+    weighed = weigh(bodies, hung, in_silence)
     pulled = _pulled(bodies, hung, weighed, gravity)
     ranks = _ranks(mapping, bodies, hung, pulled)
+    loose = [(table, gear) for table, gear in read if gear.backlash > 0.0]
     rigid = [(table, gear) for table, gear in read if gear.backlash == 0.0]
     bound = _bound(rigid, known, ranks)
-    _note_carried([(table, gear) for table, gear in read if gear.backlash > 0.0], list(known), hung)
-    _note_double([(table, gear) for table, gear in read if gear.backlash > 0.0], bound)
+    _note_carried(loose, list(known), hung)
+    _note_double(loose, bound)
     spun = _with_velocities(bodies, bound, mapping, faults)
     note_gears(spun, hung, pulled, lambda name, message: faults.add(_key(rigid, name), message))
-    return ReadGears(spun, tuple(gear for _, gear in read if gear.backlash > 0.0), tuple(gear for _, gear in rigid))
-
-
-def _in_silence(_name: str, _message: str) -> None:
-    """What cannot be carried is complained of elsewhere."""
+    return ReadGears(spun, *(tuple(gear for _, gear in some) for some in (loose, rigid)))
 
 
 def _gear(table: Table, known: Mapping[str, Body]) -> Gear | None:
@@ -149,13 +146,8 @@ def _bound(
     for name in sorted(ways, key=lambda one: (ranks[one], list(known).index(one))):
         if name in found or any(geared.to == name for geared in found.values()):
             continue
-        found.update(
-            {
-                other: Geared(name, ratio)
-                for other, ratio in reached(lambda one: ways.get(one, {}), name).items()
-                if other != name
-            }
-        )
+        others = reached(lambda one: ways.get(one, {}), name)
+        found |= {other: Geared(name, ratio) for other, ratio in others.items() if other != name}
     return found
 
 

@@ -15,7 +15,7 @@ from watchsim.geometry.primitives import Point
 from watchsim.scene.forces import Side, Spring
 from watchsim.scene.scene import Body, Scene
 from watchsim.scene.teeth import FEWEST_TEETH, teeth_of, train
-from watchsim.scene.trains import ON_PIVOT, Ride, Weighed, felt, rides, weigh
+from watchsim.scene.trains import ON_PIVOT, Ride, Weighed, felt, in_silence, rides, weigh
 
 # What swings about which rest position, by springs and by gravity, and how fast?
 #
@@ -124,15 +124,11 @@ def loads(bodies: tuple[Body, ...]) -> Loads:
     for known, found in _recent:
         if known is bodies:
             return found
-    hung = rides(bodies, _in_silence)
-    weighed = weigh(bodies, hung, _in_silence)
+    hung = rides(bodies, in_silence)
+    weighed = weigh(bodies, hung, in_silence)
     found = hung, weighed, felt(bodies, hung, weighed)
     _recent.appendleft((bodies, found))
     return found
-
-
-def _in_silence(_name: str, _message: str) -> None:
-    pass
 
 
 def _sprung(springs: Iterable[Spring]) -> tuple[str, ...]:

@@ -73,6 +73,10 @@ def _refuse(name: str, message: str) -> None:
     raise ValueError(f"{name}: {message}")
 
 
+def in_silence(_name: str, _message: str) -> None:
+    """For whom what cannot be carried is complained of elsewhere."""
+
+
 def carriers_first(bodies: tuple[Body, ...], complain: Complain) -> list[int]:
     """The numbers of the bodies, each after its carrier; one that carries itself, however indirectly, is left out."""
     names = {body.name: i for i, body in enumerate(bodies)}
