@@ -55,7 +55,7 @@ PAGES = {
         ],
     ),
     "studies": (
-        "Limit cycles, sweeps, sensitivities, tolerances, better scenes",
+        "Limit cycles, sweeps, sensitivities, tolerances, better scenes, fits",
         [
             "steady",
             "Cycle",
@@ -68,13 +68,16 @@ PAGES = {
             "merge",
             "improve",
             "watchsim.studies.improve:Better",
+            "fit",
+            "watchsim.studies.fit:Fit",
         ],
     ),
     "pictures": (
         "Plots, movies, sound and pages",
         [
             *("plot_kinematics", "plot_phases", "plot_timeline", "plot_torque", "plot_phase_portrait", "plot_forces"),
-            *("plot_energy", "plot_timing", "plot_tape", "plot_sweep", "plot_sensitivity", "plot_tolerance", "plot_front"),
+            *("plot_energy", "plot_timing", "plot_tape", "plot_sweep", "plot_sensitivity", "plot_tolerance"),
+            *("plot_front", "plot_fit"),
             *("movie", "frame", "show", "sound", "report", "listen", "watchsim.analysis.listen:Heard"),
         ],
     ),

@@ -38,6 +38,7 @@ _HOMES = {
     "ToleranceStudy": "watchsim.studies.tolerance_result",
     "merge": "watchsim.studies.tolerance",
     "improve": "watchsim.studies.improve",
+    "fit": "watchsim.studies.fit",
     "plot_sweep": "watchsim.render.study_plot",
     "plot_kinematics": "watchsim.render.kinematics_plot",
     "movie": "watchsim.render.movie",
@@ -50,6 +51,7 @@ _HOMES = {
     "plot_phase_portrait": "watchsim.render.kinematics_plot",
     "plot_torque": "watchsim.render.energy_plot",
     "plot_forces": "watchsim.render.force_plot",
+    "plot_fit": "watchsim.render.study_plot",
     "plot_front": "watchsim.render.study_plot",
     "plot_sensitivity": "watchsim.render.study_plot",
     "plot_tolerance": "watchsim.render.tolerance_plot",
@@ -90,6 +92,7 @@ if TYPE_CHECKING:
     from watchsim.render.movie import movie as movie
     from watchsim.render.phase_plots import plot_phases as plot_phases
     from watchsim.render.phase_plots import plot_timeline as plot_timeline
+    from watchsim.render.study_plot import plot_fit as plot_fit
     from watchsim.render.study_plot import plot_front as plot_front
     from watchsim.render.study_plot import plot_sensitivity as plot_sensitivity
     from watchsim.render.study_plot import plot_sweep as plot_sweep
@@ -106,6 +109,7 @@ if TYPE_CHECKING:
     from watchsim.simulation.state import Stop as Stop
     from watchsim.simulation.trajectory import Trajectory as Trajectory
     from watchsim.studies.cycle import Cycle as Cycle
+    from watchsim.studies.fit import fit as fit
     from watchsim.studies.improve import improve as improve
     from watchsim.studies.sensitivity import sensitivity as sensitivity
     from watchsim.studies.steady import steady as steady

@@ -76,6 +76,7 @@ COMMANDS = (
     "tolerance",
     "merge",
     "improve",
+    "fit",
     "verify",
     "bench",
     "export",

@@ -63,7 +63,7 @@ def run(args: argparse.Namespace) -> int:
     from watchsim.units import TIME
 
     check_tolerance(args.tol)
-    knobs, wrong = _knobs(args)
+    knobs, wrong = limits_of(args.keys, args.vary)
     folder = None if args.output is None else Path(args.output)
     if folder is not None and folder.is_dir() and any(folder.iterdir()) and not args.force:
         wrong.append(f"-o {folder}: exists already. Choose another folder, or replace what is there with --force.")
@@ -96,13 +96,13 @@ def run(args: argparse.Namespace) -> int:
     return FINE if better.found else MISSED
 
 
-def _knobs(args: argparse.Namespace) -> tuple[dict[str, tuple[str, str] | None], list[str]]:
+def limits_of(texts: list[str], free: list[str]) -> tuple[dict[str, tuple[str, str] | None], list[str]]:
     """Keys with their limits; the unit behind the second limit is also that of the first."""
     from watchsim.units import UnitError, split
 
     found: dict[str, tuple[str, str] | None] = {}
     wrong = []
-    for text in args.keys:
+    for text in texts:
         key, equals, limits = (part.strip() for part in text.partition("="))
         parts = [part.strip() for part in limits.split(":")]
         if not key or not equals or len(parts) != 2 or not all(parts):
@@ -114,7 +114,7 @@ def _knobs(args: argparse.Namespace) -> tuple[dict[str, tuple[str, str] | None],
         if key in found:
             wrong.append(f"{key}: is given twice; name each key once.")
         found[key] = (parts[0], parts[1])
-    for key in args.vary:
+    for key in free:
         if key in found:
             wrong.append(f"{key}: is given twice; name each key once.")
         found.setdefault(key, None)
@@ -133,9 +133,9 @@ def text(better: Better) -> str:
         rows.append([knob.key, knob.shown(knob.value), "" if new is None else knob.shown(new[1])])
     for column, pair in better.values.items():
         rows.append([by_column[column].label, *("" if one is None else shown(by_column[column], one) for one in pair)])
-    lines = [better.title, *_columns([["", "old", "new"], *rows])]
+    lines = [better.title, *columns([["", "old", "new"], *rows])]
     if better.front:
-        lines += ["", "  front", *_columns(_front(better))]
+        lines += ["", "  front", *columns(_front(better))]
     lines += [f"  held back by {words}" for words in better.active]
     if better.found and not better.active and any(one.is_goal for one in better.goals) and not better.front:
         lines.append("  no limit holds it back: it is the best between them")
@@ -158,7 +158,7 @@ def _front(better: Better) -> list[list[str]]:
     ]
 
 
-def _columns(rows: list[list[str]]) -> list[str]:
+def columns(rows: list[list[str]]) -> list[str]:
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
     return ["    " + "  ".join(f"{cell:<{w}}" for cell, w in zip(row, widths, strict=True)).rstrip() for row in rows]
 

@@ -19,6 +19,7 @@ from watchsim.render import style
 from watchsim.render.palette import FAINT, GRID, INK
 from watchsim.render.style import SERIES
 from watchsim.studies.axes import Axis
+from watchsim.studies.fit import Fit
 from watchsim.studies.improve import Better
 from watchsim.studies.point import Output
 from watchsim.studies.sensitivity import Effect, Sensitivity
@@ -95,6 +96,42 @@ def _either(better: Better, output: Output, k: int) -> float | None:
     """As it was (0), or as it is now (1)."""
     knob = next((one for one in better.knobs if one.key == output.name), None)
     return better.values[output.column][k] if knob is None else to(better.keys[knob.key][k], knob.unit)
+
+
+def plot_fit(found: Fit, width: float = style.FULL) -> Figure:
+    """What was measured and what the fitted scene gives, and below it the difference, for each kind of reading."""
+    measured = found.measured
+    made = style.figure(width, 1.3 * TALL * len(measured.columns) + REST, layout="constrained")
+    panels = made.subplots(2 * len(measured.columns), 1, sharex=True, height_ratios=[2, 1] * len(measured.columns))
+    about = f"{found.title}, fitted to {measured.name}"
+    made.suptitle(style.cut(about), x=0.01, ha="left", fontsize=style.TITLE, weight="bold", color=INK)
+    for k, (kind, values) in enumerate(measured.columns.items()):
+        over = np.arange(1, len(values) + 1) if measured.times is None else measured.times
+        upper, lower = panels[2 * k : 2 * k + 2]
+        label, unit = READINGS[kind]
+        look: dict[str, Any] = (
+            {"linewidth": style.CURVE} if measured.times is not None else {"marker": "s", "linestyle": "none"}
+        )
+        upper.plot(over, found.modelled[kind], color=SERIES[1], markersize=4.0, label="scene", **look)
+        upper.plot(over, values, "o", color=SERIES[0], markersize=2.5, label="measured")
+        lower.plot(over, values - found.modelled[kind], "o", color=SERIES[0], markersize=2.5)
+        lower.axhline(0.0, color=SERIES[1], linewidth=style.HAIR)
+        upper.set_ylabel(f"{label} ({unit})")
+        lower.set_ylabel(f"left over ({unit})")
+        for axes in (upper, lower):
+            style.dress(axes, grid="both")
+            axes.ticklabel_format(useOffset=False)
+    panels[0].legend(frameon=False, fontsize=style.SMALL, labelcolor=INK, loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2)
+    panels[-1].set_xlabel("reading" if measured.times is None else "time (s)")
+    return made
+
+
+READINGS = {
+    "angle_deg": ("angle", "°"),
+    "amplitude_deg": ("amplitude", "°"),
+    "rate_s_per_d": ("rate", "s/d"),
+    "beat_error_ms": ("beat error", "ms"),
+}
 
 
 def output_label(output: Output) -> str:
