@@ -131,6 +131,28 @@ def test_period_against_inertia_and_stiffness(found):
     assert slope["springs.0.stiffness"] - by_stiffness == pytest.approx(-0.5, abs=1e-4)
 
 
+@pytest.mark.parametrize(
+    "design, values, name, side",
+    [
+        ("swiss_lever", {}, "q_factor", 0),
+        ("swiss_lever", {}, "frequency", 0),  # with the Q kept, as the design has it
+        ("swiss_lever", {"q_factor": 2000.0, "torque": "0.15 µN·m"}, "q_factor", -1),  # at its upper bound
+        ("duplex", {"friction": 0.2}, "friction", -1),
+    ],
+)
+def test_dimensions_of_a_design_against_sweeps(design, values, name, side):
+    """Also those that springs and damping are written by; at an upper bound with the sign that the amplitude has."""
+    scene = getattr(ws.designs, design)(**values).scene()
+    effect = ws.sensitivity(scene, [f"design.{name}"], outputs=["amplitude"]).effects[0]
+    one, step = effect.quantity, 2.0 * effect.quantity.step
+    assert (one.value + step > one.high) is (side < 0)
+    places = [one.value + (k + side) * step for k in (-1, 0, 1)]
+    low, middle, high = (row["amplitude_deg"] for row in ws.sweep(scene, {one.key: places}, outputs=["amplitude"]).rows)
+    slope = (high - low + side * (2.0 * middle - high - low)) / (2.0 * step)
+    assert effect.message == "" and abs(slope) > 1e-3
+    assert effect.by["amplitude_deg"].value == pytest.approx(slope, rel=2e-3)
+
+
 def test_what_is_only_drawn_is_no_quantity():
     scene = ws.load(ws.profiles_dir() / "swiss_lever")
     assert scene.source["springs"][0]["draw"]["outer"]  # this one has a hairspring to be seen

@@ -22,6 +22,7 @@ from watchsim.scene.errors import Fault, SceneError
 from watchsim.scene.keys import DESIGN
 from watchsim.scene.roles import nominal_frequency
 from watchsim.scene.scene import Body, Scene
+from watchsim.studies.axes import Value
 from watchsim.studies.cycle import Cycle
 from watchsim.studies.point import USUAL, Output, Question, Row, outputs_named
 from watchsim.studies.steady import steady
@@ -73,6 +74,28 @@ def fixed_nominal(scene: Scene, leave: Collection[str] = ()) -> Scene:
         if "q_factor" in entry and "q_factor" not in leave:
             scene = scene.set(f"damping.{i}.viscous", damping.viscous)
     return scene
+
+
+def _given_by(scene: Scene, key: str, value: float) -> dict[str, Value]:
+    """All that `fixed_nominal` fixes, as a design has it whose dimension `key` is there to give some of it; else nothing."""
+    if not key.startswith(f"{DESIGN}."):
+        return {}
+    try:
+        moved = scene.set(key, value)
+    except SceneError:  # the row of the point says why
+        return {}
+    before, after = _by_ratio(scene), _by_ratio(moved)
+    return after if before != after else {}
+
+
+def _by_ratio(scene: Scene) -> dict[str, Value]:
+    """Frequencies of springs and Qs of damping, as they are written."""
+    return {
+        f"{section}.{i}.{name}": entry[name]
+        for section, name in (("springs", "frequency"), ("damping", "q_factor"))
+        for i, entry in enumerate(scene.source.get(section, []))
+        if name in entry
+    }
 
 
 def quantities(scene: Scene) -> tuple[Quantity, ...]:
@@ -246,8 +269,9 @@ def sensitivity(
 ) -> Sensitivity:
     """Derivatives on the limit cycle by all numbers of the scene, or by those at `keys`; other arguments as of `sweep`.
 
-    Springs count by their stiffness and damping by its coefficient, also where the scene gives frequency and Q, and the rate is
-    against the nominal frequency of the scene as it is. The derivative of the beat error is that of
+    Springs count by their stiffness and damping by its coefficient, also where the scene gives frequency and Q (but where a
+    dimension of a design gives one of these, as design.q_factor, it is varied with the other kept), and the rate is against the
+    nominal frequency of the scene as it is. The derivative of the beat error is that of
     `Cycle.uneven_ms`. ValueError where the scene has no limit cycle.
     """
     if not isinstance(scene, Scene):
@@ -269,7 +293,7 @@ def found(
 ) -> Sensitivity:
     """The same for what has been checked."""
     begun = time.perf_counter()
-    scene = fixed_nominal(scene)
+    drawn, scene = scene, fixed_nominal(scene)
     asked = _asked(scene, keys)
     cycle = steady(scene, tolerance=tolerance)
     if not cycle.found or cycle.amplitude_deg is None:
@@ -278,7 +302,8 @@ def found(
     brief = cycle.oscillations == 1 and all(one.name != "multiplier" for one in outputs)
     question = Question(scene, True, None, tolerance, float(np.radians(cycle.amplitude_deg)), brief)
     points = [point for quantity in asked for point in points_of(quantity)]
-    rows = _rows(question, points, executor, folder, resume, progress)
+    changes = [{key: value, **_given_by(drawn, key, value)} for key, value in points]
+    rows = _rows(question, changes, executor, folder, resume, progress)
     level = _level(cycle, outputs)
     by_key: dict[str, dict[float, Row]] = {}
     for number, row in rows.items():
@@ -327,20 +352,20 @@ def _steps(quantity: Quantity) -> tuple[float, float]:
 
 def _rows(
     question: Question,
-    points: Sequence[tuple[str, float]],
+    changes: Sequence[Mapping[str, Value]],
     executor: Executor,
     folder: str | Path | None,
     resume: bool,
     progress: Progress | None,
 ) -> dict[int, Row]:
-    changes = [(number, {key: value}) for number, (key, value) in enumerate(points)]
+    points = list(enumerate(changes))
     if folder is None:
         rows: dict[int, Row] = {}
-        computed(question, changes, executor, rows.__setitem__, progress)
+        computed(question, points, executor, rows.__setitem__, progress)
         return rows
-    keys = {"sensitivity": sorted({key for key, _ in points})}
+    keys = {"sensitivity": sorted({key for change in changes for key in change})}
     with Journal(Path(folder), study_of(question, keys), resume) as journal:  # type: ignore[arg-type]
-        left = [(number, change) for number, change in changes if number not in journal.rows]
+        left = [(number, change) for number, change in points if number not in journal.rows]
         computed(question, left, executor, journal.add, progress)
         return journal.rows
 
