@@ -144,6 +144,13 @@ ROOT_RESOLUTION = 1e-15
 # Of the time: the same for turning points and passages, whose times make the rate. Large: jitter; small: needless
 # evaluations.
 PASSAGE_RESOLUTION = 1e-16
+# tolerances: defect of a step's extension. Its path is off by a fifth of that: in lever scenes by 6 at most, in a step that has
+# grown too fast by 200. Large: contacts close early or late; small: needless steps.
+DEFECT = 30.0
+# rad of the fastest coordinate's own time scale: the longest flight. Large: longer buffers; small: more steps.
+FLIGHT_PHASE = 1.6
+# Events within an instant, and impacts and decisions in a row at one event, at most. Large: hangs; small: ends runs.
+EVENTS_AT_ONCE, ROUNDS = 2000, 16
 # Of `accumulation_time`: events that close count as at once. Large: ends runs; small: hangs where time stands.
 SAME_INSTANT = 1e-3
 

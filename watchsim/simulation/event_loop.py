@@ -64,7 +64,6 @@ from watchsim.simulation.scratch import (
 )
 from watchsim.simulation.state import NO_CONTACT, Stop
 from watchsim.simulation.step_path import (
-    FLIGHT_PHASE,
     add_flight_sums,
     begin_flight,
     can_fly,
@@ -76,18 +75,19 @@ from watchsim.simulation.step_path import (
 from watchsim.tolerances import (
     DEPENDENT_AT_EVENTS,
     DEPENDENT_IN_STEPS,
+    EVENTS_AT_ONCE,
     FINEST_ROWS,
+    FLIGHT_PHASE,
     FURTHEST_SIZES,
     LEFT_PRIMITIVE,
+    ROUNDS,
     SAME_INSTANT,
 )
 
 TOUCHED, BEARING, KINDS = MONITORS, MONITORS + 1, MONITORS + 2  # what ends a step, besides the monitors of a contact
 FLIGHT_CELLS = 128
-EVENTS_AT_ONCE = 2000
 ROWS_PER_STEP = math.ceil(FLIGHT_PHASE / FINEST_ROWS) + 8
 EVENTS_PER_CONTACT = 20
-ROUNDS = 16  # impacts and decisions in a row at one instant
 
 # What follows an event?
 #

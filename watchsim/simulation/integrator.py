@@ -39,6 +39,7 @@ from watchsim.simulation.step_path import (
     turning_time,
 )
 from watchsim.tolerances import (
+    DEFECT,
     DEPENDENT_IN_STEPS,
     HIDDEN_REBOUND,
     RATES_TURNED,
@@ -281,9 +282,7 @@ def first_turn(model, regime, q, u):
 # than shortening it.
 SAFETY, SHRINK, GROW = 0.78, 0.2, 6.0
 
-# After what share of a step the extension's defect is largest, and how many tolerances it may be. The path is off by a fifth of
-# its defect. In lever scenes that is at most 6 tolerances, in a step that has grown too fast 200.
-PROBE, DEFECT = 0.75, 30.0
+PROBE = 0.75  # share of a step after which its extension's defect is largest
 
 
 @kernel

@@ -19,7 +19,7 @@ from watchsim.model import FREE
 from watchsim.simulation.options import longest_step
 from watchsim.simulation.scratch import FLIGHT, is_kept, keep_event, keep_row
 from watchsim.simulation.state import EventKind
-from watchsim.tolerances import FLIGHT_SIZES, PASSAGE_RESOLUTION
+from watchsim.tolerances import FLIGHT_PHASE, FLIGHT_SIZES, PASSAGE_RESOLUTION
 
 # Where, between two times with values of opposite sign, is a zero?
 #
@@ -258,8 +258,6 @@ def flight_acceleration(model, step, i, q, u):
 # How does an exact flight go: how long, with which work and losses, and with which rows?
 #
 # Where no contact couples the moving bodies, each coordinate follows its own closed form (see `free`) up to the next event.
-
-FLIGHT_PHASE = 1.6  # rad of the fastest coordinate's own time scale: the longest flight
 
 # Gauss-Legendre nodes and weights on [0, 1]: damping losses of a flight of at most a quarter period, to rounding.
 _NODES = (0.019855071751231856, 0.10166676129318664, 0.2372337950418355, 0.4082826787521751)
