@@ -63,7 +63,7 @@ PAINLEVE = 1e-9
 # Of that: where a step ends. Near 1: rounding may then find the contact not yet jammed; small: huger forces.
 PAINLEVE_WATCHED = 0.9
 # Of the fastest slip: one that slow has no direction. Large: mirror images differ; small: rounding takes sides.
-NO_HAND = 1e-9
+NO_DIRECTION = 1e-9
 # Of the largest force: by so much a law may be missed. Large: forces that pull; small: needless searches.
 LAW_SLACK = 1e-9
 # Of the force at which a mode ends: by so much laws may be missed that leave no forces at all, less than `BEGIN_SLACK`.

@@ -277,8 +277,8 @@ def cases(args: argparse.Namespace) -> Iterator[Case]:
     from watchsim.verification import benchmarks, hard_cases, repeated_impacts
     from watchsim.verification.verify import rows_of
 
-    def motion(scene: Any) -> Any:
-        run = simulate(scene, tolerance=1e-9, progress=_Clock())
+    def motion(scene: Any, tolerance: float = 1e-9) -> Any:
+        run = simulate(scene, tolerance=tolerance, progress=_Clock())
         shares = run.end_q * _weights(scene) if all(body.loops for body in scene.bodies) else run.end_q
         return (shares.tolist(), run.end_u.tolist(), run.counts, int(run.stop)), run
 
@@ -299,7 +299,8 @@ def cases(args: argparse.Namespace) -> Iterator[Case]:
     for one in (case for make in (*made, repeated_impacts.repeated_impacts) for case in make()):
         yield f"verify/{one.name}", partial(motion, one.scene), partial(wrong, one)
     for path in (*sorted((ROOT / "tests/data/hunt").glob("*.toml")), *args.scenes):
-        yield f"kept/{path.stem}", partial(motion, load(path)), partial(verdict, load(path), 0)
+        for tolerance, name in ((1e-9, path.stem), (1e-7, f"{path.stem} at 1e-7"), (1e-11, f"{path.stem} at 1e-11")):
+            yield f"kept/{name}", partial(motion, load(path), tolerance), partial(verdict, load(path), 0)
     for k in range(args.start, args.start + args.count):
         scene = mechanism(SEED, k)
         yield f"hunt/{k}", partial(motion, scene), partial(verdict, scene, k)

@@ -216,7 +216,7 @@ def test_rates_of_what_is_in_force_and_slips_of_what_sticks_vanish(seed: int, mo
     whole = both(normal, tangential)
     assert changed - u == pytest.approx(least(whole[rows], -every[rows], inverse), rel=1e-6, abs=1e-9)
     assert [i for i in range(6) if work.correction[i] != 0.0] == sorted(rows)
-    left = in_python(drift_projection.rate_left)
+    left = in_python(drift_projection.remaining_rate)
     for i in range(3):
         assert left(closed, 3, i, work) == pytest.approx(rates[i] + normal[i] @ (changed - u), abs=1e-12)
 

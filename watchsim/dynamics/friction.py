@@ -35,7 +35,7 @@ from watchsim.dynamics.lcp import (
 from watchsim.dynamics.redundant import unit_scale
 from watchsim.jit import by_reference, kernel
 from watchsim.model import blank
-from watchsim.tolerances import ACCELERATION_ROUNDING, LCP_ROUGH, LCP_ROUNDING, NO_HAND, NUDGE, PAINLEVE
+from watchsim.tolerances import ACCELERATION_ROUNDING, LCP_ROUGH, LCP_ROUNDING, NO_DIRECTION, NUDGE, PAINLEVE
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -144,7 +144,7 @@ def choose_signs(G, slip, m, rows, elements, problem):
     for e in range(elements):
         row, block = element_row(problem, m, e), problem.block[e]
         direction = slip[row]
-        if _cost(G, slip, row) <= NO_HAND * NO_HAND * largest and block < m:
+        if _cost(G, slip, row) <= NO_DIRECTION * NO_DIRECTION * largest and block < m:
             direction = G[row, 2 * block]
         if direction < 0.0:
             sign[row] = -1.0

@@ -231,7 +231,7 @@ def find_correction(closed, m, mode, independent, inverse, projection):
 
 
 @kernel
-def rate_left(closed, m, i, projection):
+def remaining_rate(closed, m, i, projection):
     """Gap rate of contact i after the correction just found, m/s."""
     rate = closed.kin[i].gN_dot
     for row in range(2 * m):
@@ -380,7 +380,7 @@ def normal_margin(system, i, zero):
 
 
 @kernel
-def grip_left(friction, system, i, zero):
+def cone_margin(friction, system, i, zero):
     """How far the friction force of contact i, which sticks, is from its bound, with the share `zero` of its terms on top."""
     normal = system.force[2 * i]
     if normal == 0.0 and system.size[2 * i] == 0.0:
@@ -394,7 +394,7 @@ def _tangential_monitor(friction, mode, slip, lenience, options, i, system):
     if friction == 0.0:
         return 1.0
     if mode == STICK:
-        return grip_left(friction, system, i, lenience * options.force_zero)
+        return cone_margin(friction, system, i, lenience * options.force_zero)
     # A slip that counted as none may run against the mode decided: it ends only beyond what counts as none.
     return mode * slip + lenience * SLIP_SLACK * options.speed_zero
 

@@ -288,7 +288,7 @@ def _list_awake_first(model, regime, f, event, out_instant):
 
 
 @kernel
-def where_it_is(model, q, u):
+def check_state(model, q, u):
     """Stop.RUNNING where all coordinates and velocities are numbers and contacts can be resolved at them, or else why not."""
     for i in range(len(q)):
         if not math.isfinite(q[i] + u[i]):
@@ -448,7 +448,7 @@ def _loop(model, cells, state, options, until, scratch, record):
         code, event = _smooth_step(model, cells, state, options, until.end, scratch, record)
         if code != Stop.RUNNING:
             return _undone(code, before, state.counts)
-        code = where_it_is(model, state.q, state.u)
+        code = check_state(model, state.q, state.u)
         if code != Stop.RUNNING:
             return code
         state.instant.event_waits = 1 if event else 0

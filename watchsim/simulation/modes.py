@@ -17,7 +17,7 @@ from watchsim.dynamics.friction import LARGEST, law_of
 from watchsim.dynamics.lcp import Solver
 from watchsim.jit import kernel
 from watchsim.simulation.closed_contacts import kinetic_energy, refresh, resting
-from watchsim.simulation.coupled_motion import find_correction, grip_left, normal_margin, project_velocities, rate_left
+from watchsim.simulation.coupled_motion import cone_margin, find_correction, normal_margin, project_velocities, remaining_rate
 from watchsim.simulation.scratch import keep_change, keep_event
 from watchsim.simulation.state import EventKind
 from watchsim.tolerances import (
@@ -188,7 +188,7 @@ def contradicts(model, touched, r, options, system, event, projection, out_a):
                 break
     find_correction(rest, r, event.decided, DEPENDENT_AT_EVENTS, system.inverse, projection)
     for i in range(r):
-        left = abs(rate_left(rest, r, i, projection)) if event.decided[rest.ids[i]] != OPEN else 0.0
+        left = abs(remaining_rate(rest, r, i, projection)) if event.decided[rest.ids[i]] != OPEN else 0.0
         if left > CONTRADICTING_RATE * rate_rounding(rest, i, options, event.peak_speed):
             return True
     return False
@@ -326,7 +326,7 @@ def _weakest(model, mode, lenience, m, options, system, rest):
             worst, found, row, pulls = left, True, i, True
         friction = law_of(model, rest.ids[i]).friction
         if friction > 0.0 and mode[rest.ids[i]] == STICK:
-            left = grip_left(friction, system, i, zero)
+            left = cone_margin(friction, system, i, zero)
             if left <= worst:
                 worst, found, row, pulls = left, True, i, False
     return found, row, pulls
