@@ -67,7 +67,7 @@ PAGES = {
             "ToleranceStudy",
             "merge",
             "improve",
-            "watchsim.studies.improve:Better",
+            "watchsim.studies.goals:Better",
             "fit",
             "watchsim.studies.fit:Fit",
         ],

@@ -79,7 +79,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def text(found: Fit) -> str:
-    """For people: values with their intervals, and what cannot be told apart."""
+    """For people: values with their intervals, and what cannot be distinguished."""
     from watchsim.commands.improve import columns
 
     rows = [["", "scene", "fitted", "95 % interval"]]

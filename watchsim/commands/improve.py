@@ -26,7 +26,7 @@ from watchsim.commands.console import (
 )
 
 if TYPE_CHECKING:
-    from watchsim.studies.improve import Better
+    from watchsim.studies.goals import Better
 
 HELP = "the better watch: goals, limits, and what holds it back"
 
@@ -123,11 +123,10 @@ def limits_of(texts: list[str], free: list[str]) -> tuple[dict[str, tuple[str, s
 
 def text(better: Better) -> str:
     """For people: a table of old and new, and what holds it back."""
-    from watchsim.studies.goals import shown
-    from watchsim.studies.point import OUTPUTS
+    from watchsim.studies.goals import KNOWN, shown
 
     rows = []
-    by_column = {one.column: one for one in OUTPUTS.values()}
+    by_column = {one.column: one for one in KNOWN.values()}
     for knob in better.knobs:
         new = better.keys.get(knob.key)
         rows.append([knob.key, knob.shown(knob.value), "" if new is None else knob.shown(new[1])])
@@ -147,10 +146,9 @@ def text(better: Better) -> str:
 
 
 def _front(better: Better) -> list[list[str]]:
-    from watchsim.studies.goals import shown
-    from watchsim.studies.point import OUTPUTS
+    from watchsim.studies.goals import KNOWN, shown
 
-    outputs = [one for one in OUTPUTS.values() if one.column in better.front[0]]
+    outputs = [one for one in KNOWN.values() if one.column in better.front[0]]
     head = [*(knob.key for knob in better.knobs), *(one.label for one in outputs)]
     return [head] + [
         [*(knob.shown(one[knob.key]) for knob in better.knobs), *(shown(out, one[out.column]) for out in outputs)]

@@ -86,7 +86,7 @@ def text(heard: Heard) -> str:
         lines.append(("rate", f"{rate}, against {heard.nominal_vph:g} vph"))
     lines.append(("beat error", with_error(heard.beat_error_ms, heard.beat_error_ms_error, " ms")))
     if heard.amplitude_deg is None:
-        lines.append(("amplitude", "no second noise is heard in the beats by which it could be told"))
+        lines.append(("amplitude", "no second noise is heard in the beats by which it could be measured"))
     else:
         lines.append(("amplitude", f"{heard.amplitude_deg:.0f}° with a lift angle of {heard.lift_angle_deg:g}°"))
         lines.append(("", f"the last loud noise comes {heard.interval_ms:.2f} ms after the first"))

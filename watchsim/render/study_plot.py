@@ -20,7 +20,7 @@ from watchsim.render.palette import FAINT, GRID, INK
 from watchsim.render.style import SERIES
 from watchsim.studies.axes import Axis
 from watchsim.studies.fit import Fit
-from watchsim.studies.improve import Better
+from watchsim.studies.goals import Better
 from watchsim.studies.point import Output
 from watchsim.studies.sensitivity import Effect, Sensitivity
 from watchsim.studies.sweep import Sweep

@@ -1,4 +1,4 @@
-"""Which numbers of a scene make it do what was measured, how well are they known, and which cannot be told apart?
+"""Which numbers of a scene make it do what was measured, how well are they known, and which cannot be distinguished?
 
 Least squares by scipy's trust region. Intervals follow from the Jacobian at the best fit, in units of the scatter around it,
 with Student's quantiles. Numbers that stand in for each other are a small singular value of its columns, each made one long.
@@ -332,7 +332,7 @@ class Fitting:
     def _intervals(
         self, z: Array, jacobian: Array, left: Array
     ) -> tuple[dict[str, Value], tuple[tuple[str, ...], ...], tuple[str, ...]]:
-        """Values with their intervals, what cannot be told apart, and in words how it stands in for each other."""
+        """Values with their intervals, what cannot be distinguished, and in words how it stands in for each other."""
         from scipy.stats import norm, t
 
         spare = len(left) - len(z)
@@ -371,4 +371,4 @@ class Fitting:
             f"{abs(r):.3g} % {'more' if r > 0.0 else 'less'} {name}" for r, name in zip(ratios, names[1:], strict=True)
         )
         listed = f"{', '.join(names[:-1])} and {names[-1]}"
-        return f"{listed} cannot be told apart: 1 % more {names[0]} with {others} changes nothing measured; keep one known"
+        return f"{listed} cannot be distinguished: 1 % more {names[0]} with {others} changes nothing measured; keep one known"

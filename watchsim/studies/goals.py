@@ -7,9 +7,10 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
+from watchsim.displays import notebook_html
 from watchsim.scene.errors import Fault, SceneError
 from watchsim.scene.keys import DESIGN, nearest
 from watchsim.scene.read_settings import FUNCTION
@@ -20,7 +21,9 @@ from watchsim.studies.sensitivity import quantity_at
 from watchsim.units import ANGLE, NUMBER, RATE, TIME, Dimension, UnitError, parse, show, split, to
 
 MOST, LEAST, EQUAL, ABOVE, BELOW = "max", "min", "=", ">=", "<="
-UNITS = {"°": ANGLE, "s/d": RATE, "ms": TIME, "s": TIME, "": NUMBER}  # of outputs
+UNITS = {"°": ANGLE, "s/d": RATE, "ms": TIME, "s": TIME, "": NUMBER, "%": NUMBER}  # of outputs
+YIELD = Output("yield", "yield_percent", "yield", "%", has_error=False)  # of watches made to the scene's tolerances
+KNOWN = {**OUTPUTS, YIELD.name: YIELD}
 FAR = 10.0  # times the value a number without limits may become, or a tenth of it
 PLACE = "improve"
 
@@ -144,6 +147,9 @@ def value_at(scene: Scene, key: str) -> Any:
 
 
 def _advice(scene: Scene, key: str) -> str:
+    if "." not in key and DESIGN not in scene.source:
+        why = "this scene has no [design], whose dimensions have such names"
+        return f'{why}: write [design] with of = "swiss_lever" in place of its drawings, or name a path such as torques.0.value'
     try:
         scene.set(key, "0")
     except SceneError as error:
@@ -166,9 +172,9 @@ def aims_from(texts: Iterable[str], knobs: Sequence[Knob], option: str, faults: 
             faults.append(Fault(option, f"write {example}", f' "{text}"', place=PLACE))
             continue
         name, way = match[1], {"≥": ABOVE, "≤": BELOW}.get(match[2], match[2])
-        output = OUTPUTS.get(name) or next((one.output for one in knobs if name in (one.key, one.key.rpartition(".")[2])), None)
+        output = KNOWN.get(name) or next((one.output for one in knobs if name in (one.key, one.key.rpartition(".")[2])), None)
         if output is None:
-            known = [*OUTPUTS, *(one.key for one in knobs)]
+            known = [*KNOWN, *(one.key for one in knobs)]
             faults.append(
                 Fault(option, f'"{name}" is neither an output nor varied. {nearest(name, known)}', f' "{text}"', place=PLACE)
             )
@@ -218,3 +224,65 @@ def needs(aims: Iterable[Aim]) -> tuple[bool, bool]:
     """Is the motion needed for these, and the geometry of function?"""
     names = {one.output.name for one in aims}
     return bool(names & (set(OUTPUTS) - set(FUNCTION))), bool(names & set(FUNCTION))
+
+
+@dataclass(frozen=True)
+class Better:
+    """A better scene, or the reason why there is none.
+
+    value   of the (first) goal; `values` of all goals and limits, as they were (old, None where it did not tick) and are
+    keys    path -> (old, new), SI
+    active  sentences on what holds it back, with what a little more room would give
+    front   of several goals: designs of which none is better in all, as {path: SI, output: value}
+    starts  how many searches there were, and how many ended in this design
+    """
+
+    title: str
+    goals: tuple[Aim, ...]
+    keeps: tuple[Aim, ...]
+    knobs: tuple[Knob, ...]
+    found: bool
+    message: str
+    value: float | None
+    values: Mapping[str, tuple[float | None, float | None]]
+    keys: Mapping[str, tuple[float, float]]
+    active: tuple[str, ...]
+    front: tuple[Mapping[str, float], ...]
+    starts: tuple[int, int]
+    evaluations: int
+    without: int
+    wall_s: float
+    scene: Scene = field(repr=False)
+    nominal: float | None = None
+
+    def __repr__(self) -> str:
+        if not self.found:
+            return f"<No better {self.title!r}: {self.message}>"
+        goals = ", ".join(str(one) for one in self.goals)
+        return f"<Better {self.title!r}: {goals}: {self.value:.6g}, {len(self.active)} limits hold it back>"
+
+    def _repr_html_(self) -> str:
+        return notebook_html(self)
+
+    @property
+    def changes(self) -> dict[str, str]:
+        """The new values as texts for a scene file, and the frequency that a rate is against where the scene did not say it."""
+        new = {one.key: show(self.keys[one.key][1], one.unit, 12) for one in self.knobs if one.key in self.keys}
+        return new | ({} if self.nominal is None else {"timegrapher.frequency": f"{self.nominal!r} Hz"})
+
+    def numbers(self) -> dict[str, Any]:
+        """What `improve --json` prints."""
+        return {
+            "found": self.found,
+            "goal": [str(one) for one in self.goals] if len(self.goals) > 1 else str(self.goals[0]),
+            "value": self.value,
+            "keys": {key: {"old": old, "new": new} for key, (old, new) in self.keys.items()},
+            "outputs": {name: {"old": old, "new": new} for name, (old, new) in self.values.items()},
+            "active": list(self.active),
+            "front": [dict(one) for one in self.front],
+            "message": self.message,
+            "starts": {"searches": self.starts[0], "same": self.starts[1]},
+            "evaluations": self.evaluations,
+            "without_number": self.without,
+            "wall_s": self.wall_s,
+        }

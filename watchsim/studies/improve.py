@@ -13,14 +13,13 @@ import itertools
 import math
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.displays import notebook_html
 from watchsim.scene.errors import Fault, SceneError
 from watchsim.scene.load import changed
 from watchsim.scene.roles import nominal_frequency
@@ -29,9 +28,12 @@ from watchsim.studies.goals import (
     ABOVE,
     BELOW,
     EQUAL,
+    KNOWN,
     MOST,
     PLACE,
+    YIELD,
     Aim,
+    Better,
     Knob,
     aims_from,
     check,
@@ -39,15 +41,15 @@ from watchsim.studies.goals import (
     needs,
     shown,
 )
-from watchsim.studies.point import OUTPUTS, Question, Row, function_of
+from watchsim.studies.point import Question, Row, function_of
 from watchsim.studies.sensitivity import change_of
 from watchsim.studies.steady import steady
 from watchsim.studies.workers import Executor, chosen
-from watchsim.units import show
 
 Array = NDArray[np.float64]
 METHODS = ("auto", "slsqp", "nelder-mead", "differential-evolution")
 
+SAMPLES = 256  # watches of a yield: each design takes so many limit cycles
 STEP = 5e-4  # of a range: of central differences
 FEW = 2  # teeth whose geometry of function is measured; those of a design are alike
 KEPT = 1e-7  # of what a limit changes over a range: so far it may be broken
@@ -78,68 +80,6 @@ class Limit(NamedTuple):
     def sign(self) -> float:
         """+1 where more of the output is on the good side."""
         return -1.0 if self.way == BELOW else 1.0
-
-
-@dataclass(frozen=True)
-class Better:
-    """A better scene, or the reason why there is none.
-
-    value   of the (first) goal; `values` of all goals and limits, as they were (old, None where it did not tick) and are
-    keys    path -> (old, new), SI
-    active  sentences on what holds it back, with what a little more room would give
-    front   of several goals: designs of which none is better in all, as {path: SI, output: value}
-    starts  how many searches there were, and how many ended in this design
-    """
-
-    title: str
-    goals: tuple[Aim, ...]
-    keeps: tuple[Aim, ...]
-    knobs: tuple[Knob, ...]
-    found: bool
-    message: str
-    value: float | None
-    values: Mapping[str, tuple[float | None, float | None]]
-    keys: Mapping[str, tuple[float, float]]
-    active: tuple[str, ...]
-    front: tuple[Mapping[str, float], ...]
-    starts: tuple[int, int]
-    evaluations: int
-    without: int
-    wall_s: float
-    scene: Scene = field(repr=False)
-    nominal: float | None = None
-
-    def __repr__(self) -> str:
-        if not self.found:
-            return f"<No better {self.title!r}: {self.message}>"
-        goals = ", ".join(str(one) for one in self.goals)
-        return f"<Better {self.title!r}: {goals}: {self.value:.6g}, {len(self.active)} limits hold it back>"
-
-    def _repr_html_(self) -> str:
-        return notebook_html(self)
-
-    @property
-    def changes(self) -> dict[str, str]:
-        """The new values as texts for a scene file, and the frequency that a rate is against where the scene did not say it."""
-        new = {one.key: show(self.keys[one.key][1], one.unit, 12) for one in self.knobs if one.key in self.keys}
-        return new | ({} if self.nominal is None else {"timegrapher.frequency": f"{self.nominal!r} Hz"})
-
-    def numbers(self) -> dict[str, Any]:
-        """What `improve --json` prints."""
-        return {
-            "found": self.found,
-            "goal": [str(one) for one in self.goals] if len(self.goals) > 1 else str(self.goals[0]),
-            "value": self.value,
-            "keys": {key: {"old": old, "new": new} for key, (old, new) in self.keys.items()},
-            "outputs": {name: {"old": old, "new": new} for name, (old, new) in self.values.items()},
-            "active": list(self.active),
-            "front": [dict(one) for one in self.front],
-            "message": self.message,
-            "starts": {"searches": self.starts[0], "same": self.starts[1]},
-            "evaluations": self.evaluations,
-            "without_number": self.without,
-            "wall_s": self.wall_s,
-        }
 
 
 def improve(  # noqa: PLR0913 - options, by name
@@ -184,8 +124,14 @@ def improve(  # noqa: PLR0913 - options, by name
             faults.append(
                 Fault(name, f"choose {', '.join(METHODS)}" if least is None else f"from {least} to 1000", f" = {value}", PLACE)
             )
+    drawn = any(one.output == YIELD for one in (*goals, *keeps))
+    if drawn and not scene.tolerances:
+        faults.append(Fault("yield", "this scene has no [tolerances], so every watch is the nominal one", place=PLACE))
+    if drawn and method == "auto":
+        method = "nelder-mead"  # a share of samples has steps, and no derivatives
     check(varied, goals, keeps, faults)
     search = Search(scene, varied, goals, keeps, chosen(workers, scheduler), tolerance, duration, progress)
+    search.workers = workers
     return search.result(method, starts, points)
 
 
@@ -203,7 +149,7 @@ class Search:
         duration: float | None = None,
         progress: Callable[[int], None] | None = None,
     ) -> None:
-        self.begun, self.original = time.perf_counter(), scene
+        self.begun, self.original, self.workers = time.perf_counter(), scene, 1
         self.knobs, self.goals, self.keeps, self.executor, self.progress = knobs, goals, keeps, executor, progress
         self.motion, self.function = needs((*goals, *keeps))
         self.outputs = tuple({one.output.name: one.output for one in (*goals, *keeps)}.values())
@@ -263,10 +209,22 @@ class Search:
     def _value(self, output: Any, row: Row, own: Mapping[str, float]) -> float:
         from watchsim.units import to
 
-        if output.name not in OUTPUTS:
+        if output == YIELD:
+            return self._yield(own)
+        if output.name not in KNOWN:
             return to(own[output.name], output.unit) if output.unit else own[output.name]
         value = row.get(output.column)
         return math.nan if value is None else float(value)
+
+    def _yield(self, own: Mapping[str, float]) -> float:
+        """%, of the same draws each time, so that designs differ by what they are and not by chance."""
+        from watchsim.studies.tolerance import tolerance
+
+        try:
+            made = tolerance(changed(self.question.scene, own), SAMPLES, workers=self.workers)
+        except (SceneError, ValueError):
+            return math.nan
+        return 100.0 * made.yield_
 
     def at(self, point: Array) -> Array:
         return self.low + point * self.range
@@ -542,7 +500,7 @@ class Search:
 
     def _line(self, point: Array) -> dict[str, float]:
         (values,) = self.values([point])
-        outputs = {one.column: float(v) for one, v in zip(self.outputs, values, strict=True) if one.name in OUTPUTS}
+        outputs = {one.column: float(v) for one, v in zip(self.outputs, values, strict=True) if one.name in KNOWN}
         return self._changes(point) | outputs
 
     def _impossible(self) -> str:
@@ -633,7 +591,7 @@ class Search:
         numbers = {
             one.column: (None if moved or math.isnan(old[i]) else float(old[i]), None if new is None else float(new[i]))
             for i, one in enumerate(self.outputs)
-            if one.name in OUTPUTS
+            if one.name in KNOWN
         }
         keys = {} if point is None else self._changes(point)
         scene = self.original if point is None else changed(self.question.scene, keys)
