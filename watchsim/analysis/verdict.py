@@ -111,7 +111,10 @@ def running_free(watch: Watch) -> tuple[float, str] | None:
     let_go = (end - start) / watch.found.nominal_period + 1.0
     if last - first <= FAST * let_go * watch.pitch:
         return None
-    turns = (last - first) / (2.0 * np.pi)
+    rows = watch.run.t[watch.run.t <= end]
+    way = watch.progress(rows)
+    start = float(rows[np.argmin(way - FAST * watch.pitch / watch.found.nominal_period * rows)])  # from there on it gained
+    turns = (last - float(watch.progress(np.array([start]))[0])) / (2.0 * np.pi)
     return start, f"{watch.wheel} runs through, {turns:.3g} turns from {when(start)} to {when(end)}"
 
 

@@ -61,6 +61,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--method", choices=METHODS, help=f"solver (default {EVENT_DRIVEN})")
     parser.add_argument("--step", metavar="TIME", help='step of the method moreau, such as "10 µs" (the default)')
     parser.add_argument("--resume", metavar="RUN", help="go on from the end of this results folder, up to --duration")
+    parser.add_argument("--to-the-end", action="store_true", help="go on though nothing can change any more, as after a stop")
     parser.add_argument("--error-bars", action="store_true", help="run again more exactly, and say how far the numbers move")
     parser.add_argument("--json", action="store_true", help="print the summary as one JSON object")
     parser.add_argument("--movie", action="store_true", help="write movie.mp4 too: the last beats slowly, or the whole run")
@@ -126,7 +127,15 @@ def _run(args: argparse.Namespace, held: contextlib.ExitStack) -> int:
     extras = Extras(not args.no_plots, args.movie, args.gif, args.error_bars, args.profile, args.report)
     with stopping.keeping():
         trajectory, lines, panels = simulate_with_progress(
-            scene, duration, args.tol, folder, method=method, step=step, start=start, plotted=extras.plots
+            scene,
+            duration,
+            args.tol,
+            folder,
+            method=method,
+            step=step,
+            start=start,
+            plotted=extras.plots,
+            to_the_end=args.to_the_end,
         )
         if trajectory.stop == Stop.INTERRUPTED and folder.is_dir() and any(folder.iterdir()) and not goes_on:
             kept, folder = folder, interrupted_place(folder)
@@ -161,6 +170,7 @@ def simulate_with_progress(
     step: float | None = None,
     start: Trajectory | None = None,
     plotted: bool = False,
+    to_the_end: bool = True,
 ) -> tuple[Trajectory, EventLines | None, Kinematics | None]:
     """Simulate for results in `folder`, with a progress line on a terminal; a first run says that it compiles.
 
@@ -182,7 +192,14 @@ def simulate_with_progress(
     follow = meanwhile.follow if start is None else None
     try:
         run = simulate(
-            scene, duration, tolerance, progress=stepped, method=method, step=step, start=start, stream=beside, follow=follow
+            *(scene, duration, tolerance),
+            progress=stepped,
+            method=method,
+            step=step,
+            start=start,
+            stream=beside,
+            follow=follow,
+            to_the_end=to_the_end,
         )
     finally:
         lines, panels = meanwhile.end()
@@ -217,6 +234,8 @@ def status(run: Trajectory, summary: dict[str, Any]) -> int:
     if run.stop == Stop.INTERRUPTED:
         say(f"Stopped at {run.stop_message}.")
         return stopping.status()
+    if run.stop == Stop.FOREGONE:
+        say(f"Ended before its time (--to-the-end goes on): {run.stop_message}.")
     if stopping.requested():
         say("Interrupted while writing: everything was kept except the pictures that were not drawn yet.")
         return stopping.status()

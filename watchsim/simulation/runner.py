@@ -29,6 +29,7 @@ from watchsim.scene.roles import frequency
 from watchsim.scene.scene import Recording, Scene
 from watchsim.simulation import EVENT_DRIVEN
 from watchsim.simulation.event_loop import EVENTS_PER_CONTACT, ROWS_PER_STEP, advance
+from watchsim.simulation.foregone import Foregone
 from watchsim.simulation.options import Options, natural_step, options_for
 from watchsim.simulation.overlap_watch import OverlapWatch
 from watchsim.simulation.overlap_watch import warm_up as warm_up_watch
@@ -177,6 +178,7 @@ def _words(run: Run, stop: Stop) -> str:
     model, bodies = run.compiled.model, [body.name for body in run.scene.bodies]
     details: dict[Stop, Callable[[], str]] = {
         Stop.OVERLAP: run.watch.words,
+        Stop.FOREGONE: lambda: run.foregone.words if run.foregone else "",
         Stop.LEDGER: lambda: unaccounted(run.energy()),
         Stop.UNEXPLAINED: lambda: unexplained(run.state, run.pairs),
         Stop.TOO_MANY_EVENTS: lambda: what_alternates(
@@ -234,6 +236,7 @@ class Run:
         self.watch = OverlapWatch(scene, compiled, self.method, self.kept.windows)
         self.stored_at_start = stored_energy(model, self.state.q, self.state.u)
         self._usual_energy = usual_energy(model)
+        self.foregone: Foregone | None = None  # looks for what ends the run early
         self.saved: SavedState | None = None
         self.parts_before = 0  # what was flushed before the state was saved
 
@@ -318,7 +321,7 @@ class Run:
         self.flush()
         self._look()
         self.watch.see()
-        if stop not in (Stop.DURATION, Stop.INTERRUPTED):
+        if stop not in (Stop.DURATION, Stop.INTERRUPTED, Stop.FOREGONE):
             return stop
         if self._overlaps():
             return Stop.OVERLAP
@@ -342,7 +345,7 @@ class Run:
         until = new_until(0.0, duration)
         look = self.watch.next_look(float(self.state.clock.time))
         while True:
-            pace.begin(float(self.state.clock.time), until, look)
+            pace.begin(float(self.state.clock.time), until, min(look, self.foregone.next if self.foregone else look))
             stop = self._advance(until, self.record)
             if stop == Stop.CELL_UNKNOWN:
                 self._learn()
@@ -365,10 +368,19 @@ class Run:
                 return Stop.LEDGER
             if self._overlaps():
                 return Stop.OVERLAP
+            if self._is_foregone():
+                return Stop.FOREGONE
             if progress is not None:
                 progress(float(self.state.clock.time), duration)
             if interrupted():
                 return Stop.INTERRUPTED
+
+    def _is_foregone(self) -> bool:
+        time = float(self.state.clock.time)
+        if self.foregone is None or time < self.foregone.next:
+            return False
+        self.flush()
+        return self.foregone.look(time, self.state.q, float(self.tally.last[0]))
 
     def counts(self) -> dict[str, int]:
         """How much work was done: the names of COUNT_NAMES and of the cells."""

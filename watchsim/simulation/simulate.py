@@ -17,6 +17,7 @@ from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.model import blank, row_of
 from watchsim.scene.scene import Recording, Scene, Window, as_recording
 from watchsim.simulation import EVENT_DRIVEN, METHODS, MOREAU
+from watchsim.simulation.foregone import Foregone
 from watchsim.simulation.moreau import EVENTS_PER_CONTACT, ROWS_PER_STEP, Pace, advance_fixed, moreau_work
 from watchsim.simulation.recording import Pair
 from watchsim.simulation.runner import EVENTS, ROWS, Progress, Run, load_for, trajectory_of
@@ -102,6 +103,7 @@ def simulate(  # noqa: PLR0913 - options, by name
     start: Trajectory | SavedState | None = None,
     stream: str | Path | None = None,
     follow: Follow | None = None,
+    to_the_end: bool = True,
 ) -> Trajectory:
     """Simulate `scene` from 0 to `duration` at a relative error `tolerance` per step (both default to the scene's own).
 
@@ -120,6 +122,8 @@ def simulate(  # noqa: PLR0913 - options, by name
 
     follow     called as follow(pairs, events, rows) with the events and rows (t, q, u, a) that are settled, in order, while the
                run goes on; the last ones and what goes before `start` are in the trajectory only
+
+    to_the_end  off: a watch that has come to rest, or whose wheel races, ends the run, since nothing can change any more
 
     KeyboardInterrupt ends the run and keeps what was simulated. A solver that cannot go on does not raise: see
     `Trajectory.stop`. ValueError for a bad argument, and for a `start` of another scene or other settings; SceneError where
@@ -147,6 +151,8 @@ def simulate(  # noqa: PLR0913 - options, by name
         run.kept.stream(Path(stream))
     if follow is not None:
         run.kept.follow = functools.partial(follow, run.pairs)
+    if not to_the_end:
+        run.foregone = Foregone(scene, compiled)
     if start is not None:
         _take_up(run, start, duration)
     warming = time.perf_counter()

@@ -67,6 +67,7 @@ class Stop(IntEnum):
     LAST_STEP = 11
     OUT_OF_MEMORY = 12
     FAR_AWAY = 13
+    FOREGONE = 14
     OVERLAP = 20
     UNEXPLAINED = 21
     LEDGER = 22
@@ -95,6 +96,7 @@ _SENTENCES = {
     Stop.BUFFER_FULL: "the record buffer is full",
     Stop.LAST_STEP: "the next step might reach the end",
     Stop.DURATION: "the requested duration was simulated",
+    Stop.FOREGONE: "nothing can change any more",
     Stop.INTERRUPTED: "interrupted by the user; everything up to here is kept",
     Stop.TOO_MANY_EVENTS: "too many events at one instant: time does not advance",
     Stop.LCP_FAILED: (

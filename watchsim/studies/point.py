@@ -153,7 +153,7 @@ def _by_run(question: Question, scene: Scene, interrupted: Callable[[], bool]) -
         if interrupted():
             raise KeyboardInterrupt
 
-    run = simulate(scene, question.duration, question.tolerance, record="statistics", progress=look)
+    run = simulate(scene, question.duration, question.tolerance, record="statistics", progress=look, to_the_end=False)
     if run.stop == Stop.INTERRUPTED:
         raise KeyboardInterrupt
     if run.stop.gave_up:

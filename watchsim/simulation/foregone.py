@@ -1,0 +1,58 @@
+"""Can what a watch does still change, or is it a foregone conclusion?
+
+Looked at between slices, at times that depend on nothing but the scene, so that the motion is the same whoever looks.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from watchsim.mechanism.compile import Compiled
+from watchsim.model import OVER_TIME
+from watchsim.scene.roles import drive_direction, keeps_time, nominal_frequency, pitch, roles
+from watchsim.scene.scene import Scene
+
+PERIODS = 4  # nominal ones, from look to look
+RACES = 50.0  # times as many teeth as the oscillator could let go in that time: nothing will lock the wheel again
+LOOKS = 3  # in a row without a passage through rest and without a tooth: nothing will unlock the wheel again
+
+
+class Foregone:
+    """Looks at a run of a watch; `words` says what nothing will change any more, "" until then."""
+
+    def __init__(self, scene: Scene, compiled: Compiled) -> None:
+        found, hertz = roles(scene), nominal_frequency(scene)
+        timed = any(table.over >= OVER_TIME for table in compiled.model.tables)
+        moved = any(body.prescribed is not None for body in scene.bodies)
+        self.is_watch = bool(found.wheel and keeps_time(scene) and hertz and not timed and not moved)
+        self.every, self.words, self.next = PERIODS / (hertz or 1.0), "", np.inf
+        if not self.is_watch or found.wheel is None:
+            return
+        self._compiled, self._wheel = compiled, found.wheel
+        self._pitch, self._sense = pitch(scene, found.wheel), drive_direction(scene, found.wheel)
+        self._before = 0.0, np.array(compiled.relative(compiled.q[None])[0])
+        self._idle = 0
+        self.next = self.every
+
+    def look(self, time: float, coordinates: np.ndarray, passed: float) -> bool:
+        """Is it over at `time` (s), at these coordinates? `passed`: when the oscillator last passed its rest position, s."""
+        if time < self.next:
+            return False
+        self.next = (time // self.every + 1.0) * self.every
+        q = self._compiled.relative(coordinates[None])[0]
+        (since, was), self._before = self._before, (time, q.copy())
+        if np.array_equal(q, was):
+            self.words = f"all has been at rest since t = {since:.4g} s"
+        column = self._compiled.slices[self._wheel].start
+        way = self._sense * float(q[column] - was[column])
+        if self._pitch is None or self.words:
+            return bool(self.words)
+        teeth = way / self._pitch
+        let_go = PERIODS * (time - since) / self.every + 1.0
+        self._idle = self._idle + 1 if passed < since and abs(teeth) < 0.25 else 0
+        if teeth > RACES * let_go:
+            self.words = f"{self._wheel} races, {teeth:.3g} teeth from t = {since:.4g} s to {time:.4g} s"
+        elif self._idle >= LOOKS:
+            held = time - LOOKS * self.every
+            self.words = f"since t = {held:.4g} s no tooth was let go, and no swing has passed its rest position"
+        return bool(self.words)
