@@ -32,6 +32,7 @@ _HOMES = {
     "verify": "watchsim.verification.verify",
     "steady": "watchsim.studies.steady",
     "Cycle": "watchsim.studies.cycle",
+    "compare": "watchsim.studies.compare",
     "sweep": "watchsim.studies.sweep",
     "sensitivity": "watchsim.studies.sensitivity",
     "tolerance": "watchsim.studies.tolerance",
@@ -39,6 +40,7 @@ _HOMES = {
     "merge": "watchsim.studies.tolerance",
     "improve": "watchsim.studies.improve",
     "fit": "watchsim.studies.fit",
+    "plot_comparison": "watchsim.render.compare_plot",
     "plot_sweep": "watchsim.render.study_plot",
     "plot_kinematics": "watchsim.render.kinematics_plot",
     "movie": "watchsim.render.movie",
@@ -83,6 +85,7 @@ if TYPE_CHECKING:
     from watchsim.pages.notebook import show as show
     from watchsim.pages.report_page import report as report
     from watchsim.paths import profiles_dir as profiles_dir
+    from watchsim.render.compare_plot import plot_comparison as plot_comparison
     from watchsim.render.energy_plot import plot_energy as plot_energy
     from watchsim.render.energy_plot import plot_torque as plot_torque
     from watchsim.render.force_plot import plot_forces as plot_forces
@@ -108,6 +111,7 @@ if TYPE_CHECKING:
     from watchsim.simulation.state import EventKind as EventKind
     from watchsim.simulation.state import Stop as Stop
     from watchsim.simulation.trajectory import Trajectory as Trajectory
+    from watchsim.studies.compare import compare as compare
     from watchsim.studies.cycle import Cycle as Cycle
     from watchsim.studies.fit import fit as fit
     from watchsim.studies.improve import improve as improve

@@ -72,6 +72,7 @@ COMMANDS = (
     "sound",
     "listen",
     "steady",
+    "compare",
     "sweep",
     "tolerance",
     "merge",

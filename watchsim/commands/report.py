@@ -6,9 +6,7 @@ Of the results of watchsim tolerance: yield, spread, contributions, failures.
 from __future__ import annotations
 
 import argparse
-import json
 from pathlib import Path
-from typing import Any
 
 from watchsim.commands.console import FINE, InputError, parse_window
 
@@ -26,6 +24,7 @@ def options(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from watchsim.commands.inputs import read_run, secured_file, swept_run
     from watchsim.pages.report_page import check_page, report
+    from watchsim.results.folder import read_summary
 
     window = parse_window(args.window)
     if (Path(args.run_folder) / "rows.jsonl").is_file():
@@ -33,7 +32,7 @@ def run(args: argparse.Namespace) -> int:
     swept_run(args.run_folder)
     trajectory = read_run(args.run_folder)
     target = secured_file(check_page(args.output or Path(args.run_folder) / "report.html"), "the page")
-    print(report(trajectory, target, window, numbers=_numbers(args.run_folder)))
+    print(report(trajectory, target, window, numbers=read_summary(args.run_folder)))
     return FINE
 
 
@@ -47,14 +46,3 @@ def _of_study(args: argparse.Namespace, window: tuple[float, float] | None) -> i
     target = secured_file(Path(args.output or Path(args.run_folder) / "tolerance.html"), "the page")
     print(tolerance_page(finished(args.run_folder), target))
     return FINE
-
-
-def _numbers(folder: str) -> dict[str, Any] | None:
-    """The summary as the run wrote it, which knows its error bars and promises; None where it cannot be read."""
-    from watchsim.results.folder import SUMMARY
-
-    try:
-        found = json.loads((Path(folder) / SUMMARY).read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return None
-    return found if isinstance(found, dict) and "energy" in found else None

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from watchsim import stopping
 from watchsim.commands.beside import Meanwhile
+from watchsim.commands.compare import plain_numbers, sides_of, text
 from watchsim.commands.console import (
     FINE,
     GAVE_UP,
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
     from watchsim.results.tables import EventLines
     from watchsim.scene.scene import Scene
     from watchsim.simulation.trajectory import Trajectory
+    from watchsim.studies.compare import Comparison, Side
 
 
 FAR = 1e8  # a balance has a thousand times the inertia of a lever
@@ -63,6 +65,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--resume", metavar="RUN", help="go on from the end of this results folder, up to --duration")
     parser.add_argument("--to-the-end", action="store_true", help="go on though nothing can change any more, as after a stop")
     parser.add_argument("--error-bars", action="store_true", help="run again more exactly, and say how far the numbers move")
+    parser.add_argument("--against", metavar="RUN|SCENE", help="say what differs from this one, as watchsim compare does")
     parser.add_argument("--json", action="store_true", help="print the summary as one JSON object")
     parser.add_argument("--movie", action="store_true", help="write movie.mp4 too: the last beats slowly, or the whole run")
     parser.add_argument("--gif", action="store_true", help="write movie.gif too")
@@ -124,6 +127,7 @@ def _run(args: argparse.Namespace, held: contextlib.ExitStack) -> int:
     changed = [name for name, value in given.items() if value]
     for note in notes(scene):
         say(f"Note: {note.message}. {note.fix}")
+    against = sides_of([args.against]) if args.against else []
     extras = Extras(not args.no_plots, args.movie, args.gif, args.error_bars, args.profile, args.report)
     with stopping.keeping():
         trajectory, lines, panels = simulate_with_progress(
@@ -142,14 +146,30 @@ def _run(args: argparse.Namespace, held: contextlib.ExitStack) -> int:
             goal = dataclasses.replace(goal, folder=folder, replace=False)
             say(f"The earlier results in {kept} are kept; what was simulated of this run goes to {folder}.")
         summary = write(trajectory, goal, extras, changed, lines, panels)
+    _report(args, trajectory, summary, _differences(against, trajectory, str(folder)), folder)
+    return status(trajectory, summary)
+
+
+def _report(
+    args: argparse.Namespace, run: Trajectory, summary: dict[str, Any], differences: Comparison | None, folder: Path
+) -> None:
+    """What came of it, on stdout."""
     if args.json:
-        print_json(summary)
+        print_json(summary if differences is None else {**summary, "against": plain_numbers(differences)})
         for warning in summary["warnings"]:
             say(f"Warning: {warning}.")
-    else:
-        print(report_text(trajectory, summary))
-        print(f"Results: {folder}")
-    return status(trajectory, summary)
+        return
+    print(report_text(run, summary))
+    if differences is not None:
+        print(text(differences))
+    print(f"Results: {folder}")
+
+
+def _differences(against: list[Side], run: Trajectory, name: str) -> Comparison | None:
+    """Between this run and the one that was named, where one was."""
+    from watchsim.studies.compare import compare, side_of
+
+    return compare(*against, dataclasses.replace(side_of(run), name=name)) if against else None
 
 
 def _sample(args: argparse.Namespace) -> Scene:

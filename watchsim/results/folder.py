@@ -10,6 +10,7 @@ import contextlib
 import copy
 import dataclasses
 import functools
+import json
 import os
 import platform
 import re
@@ -341,3 +342,12 @@ def read_results(folder: str | os.PathLike[str]) -> Trajectory:
     if (place / STATE).is_file():
         run = dataclasses.replace(run, end_state=read_state(place / STATE))
     return run
+
+
+def read_summary(folder: str | os.PathLike[str]) -> dict[str, Any] | None:
+    """The summary as the run wrote it, which knows its error bars and promises; None where it cannot be read."""
+    try:
+        found = json.loads((Path(folder) / SUMMARY).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+    return found if isinstance(found, dict) and "energy" in found else None

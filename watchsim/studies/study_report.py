@@ -80,7 +80,7 @@ def sweep_text(sweep: Sweep) -> str:
     """The table for people: keys in usual units, outputs without their errors, verdicts."""
     head = [_head(axis) for axis in sweep.axes] + [_title(one) for one in sweep.outputs] + ["verdict"]
     body = [_line(sweep, row) for row in sweep.rows]
-    lines = [sweep.title, *_table(head, body)]
+    lines = [sweep.title, *aligned(head, body)]
     reasons = dict.fromkeys(row["message"] for row in sweep.rows if row["message"])
     return "\n".join([*lines, *(f"  {reason}" for reason in list(reasons)[:ENDS])])
 
@@ -94,7 +94,7 @@ def sensitivity_text(found: Sensitivity) -> str:
         unit = f" {row['unit']}" if row["unit"] not in ("", "°", "%") else row["unit"]
         body.append([row["key"], f"{row['value']:.5g}{unit}", row["change"], *effects, row["message"]])
     level = f"{found.cycle.amplitude_deg:.3f}°, {found.cycle.rate_s_per_d:.3f} s/d, {found.cycle.beat_error_ms:.4f} ms"
-    return "\n".join([f"{found.title}: {level}".replace(" -", " −"), *_table(head, body)])
+    return "\n".join([f"{found.title}: {level}".replace(" -", " −"), *aligned(head, body)])
 
 
 def tolerance_table(found: ToleranceStudy) -> Table:
@@ -128,7 +128,7 @@ def tolerance_text(found: ToleranceStudy) -> str:
         spread = [_short(number) for number in (one.mean, one.sigma, *(one.quantiles[q] for q in ("0.00135", "0.99865")))]
         worst = f"{low} to {high}" if low else ""
         body.append([_title(by_column[column]), *spread, *ratios, _short(one.linear_sigma), worst, one.remark])
-    lines += _table(head, body)
+    lines += aligned(head, body)
     for name, each in found.contributions.items():
         known = f", {100.0 * found.explained[name]:.3g} % explained" if name in found.explained else ""
         told = [
@@ -180,7 +180,7 @@ def _effect(effect: Effect, column: str) -> str:
     return f"{value:+.3g}".replace("-", "−") + ("" if derivative.agrees else " ?")
 
 
-def _table(head: Sequence[str], body: list[list[str]]) -> list[str]:
+def aligned(head: Sequence[str], body: list[list[str]]) -> list[str]:
     """Columns as wide as their widest entry; the middle of a long table is left out."""
     shown = body if len(body) <= LONGEST else [*body[:ENDS], ["…"] + [""] * (len(head) - 1), *body[-ENDS:]]
     widths = [max(len(line[i]) for line in (list(head), *shown)) for i in range(len(head))]

@@ -1,0 +1,89 @@
+"""What was changed between scenes or runs, and what came of it: `watchsim compare`, `run --against`, `ws.compare`."""
+
+import json
+import math
+import shutil
+
+import pytest
+
+import watchsim as ws
+from watchsim.cli import main
+
+INCLINE = str(ws.profiles_dir() / "incline")
+GRAHAM = str(ws.profiles_dir() / "graham")
+
+
+def printed(capsys, *words):
+    assert main([*words, "--json"]) == 0
+    return json.loads(capsys.readouterr().out)
+
+
+def test_a_changed_friction_is_named_and_the_sliding_disc_ends_elsewhere(tmp_path, capsys):
+    for name, value in (("a", "0.1"), ("b", "0.2")):
+        words = ["run", INCLINE, "-o", str(tmp_path / name), "--no-plots", "--duration", "0.3 s"]
+        main([*words, "--set", f"contacts.0.friction={value}"])
+    capsys.readouterr()
+    found = printed(capsys, "compare", str(tmp_path / "a"), str(tmp_path / "b"))
+    assert found["changed"] == {"contacts.0.friction": ["0.1", "0.2"]}
+    moving = next(body.name for body in ws.load(INCLINE).bodies if body.motion != "fixed")
+    ends = [json.loads((tmp_path / name / "summary.json").read_text())["bodies"][moving]["x_m"] for name in "ab"]
+    place = found["outputs"][f"{moving}_x_mm"]
+    assert place["values"] == pytest.approx([1e3 * x for x in ends], rel=1e-12)
+    assert place["difference"] == pytest.approx(1e3 * (ends[1] - ends[0]), rel=1e-9)
+
+
+def test_two_scenes_are_answered_by_their_cycles_and_the_error_is_that_of_both():
+    scene = ws.load(GRAHAM)
+    found = ws.compare(scene, scene.set("torques.0.value", "-0.25 mN·m"))
+    first, last = (ws.steady(one) for one in (scene, scene.set("torques.0.value", "-0.25 mN·m")))
+    one = found.outputs["amplitude_deg"]
+    assert one.values == (first.amplitude_deg, last.amplitude_deg)
+    assert one.difference == last.amplitude_deg - first.amplitude_deg > 0.0
+    assert one.error == math.hypot(first.amplitude_deg_error, last.amplitude_deg_error)
+    assert found.outputs["verdict"].values == ("ticks", "ticks")
+    assert list(found.changed) == ["torques.0.value"]
+
+
+def test_a_value_in_another_unit_is_no_change_and_a_dimension_of_the_design_comes_first():
+    scene = ws.load(INCLINE)
+    assert ws.compare(scene, scene.set("run.duration", f"{1e3 * scene.duration!r} ms")).changed == {}
+    graham = ws.load(GRAHAM)
+    changed = ws.compare(graham, graham.set("design.lock", "0.5°")).changed
+    assert next(iter(changed.items())) == ("design.lock", ("0.4°", "0.5°"))
+    assert "bodies.pendulum.drawing" in changed
+
+
+def test_the_run_of_a_scene_differs_from_it_in_nothing_and_curves_of_both_are_drawn(tmp_path, capsys):
+    first, second = tmp_path / "a", tmp_path / "b"
+    main(["run", GRAHAM, "-o", str(first), "--no-plots", "--duration", "4 s"])
+    shutil.copytree(first, second)
+    capsys.readouterr()
+    picture = tmp_path / "both.svg"
+    assert main(["compare", str(first), str(second), "-o", str(picture)]) == 0
+    assert "Nothing was changed in the scene." in capsys.readouterr().out
+    assert [picture.read_text().count(f'<g id="{place}">') for place in (first, second)] == [3, 3]
+    assert ws.compare(first, ws.load(GRAHAM)).changed == {}
+
+
+def test_run_against_an_earlier_one_prints_the_differences(tmp_path, capsys):
+    first, second = str(tmp_path / "a"), str(tmp_path / "b")
+    words = ["--no-plots", "--duration", "0.2 s", "--set"]
+    main(["run", INCLINE, "-o", first, *words, "contacts.0.friction=0.1"])
+    capsys.readouterr()
+    main(["run", INCLINE, "-o", second, *words, "contacts.0.friction=0.2", "--against", first])
+    out = capsys.readouterr().out
+    assert "contacts.0.friction" in out
+    assert "difference" in out
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["compare", INCLINE], "two results folders or scenes"),
+        (["compare", INCLINE, "nowhere"], "no such scene file"),
+        (["compare", INCLINE, INCLINE, "-o", "plot.doc"], ".png"),
+    ],
+)
+def test_what_cannot_be_compared_is_refused(words, said, capsys):
+    assert main(words) == 2
+    assert said in capsys.readouterr().err

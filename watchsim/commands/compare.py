@@ -1,0 +1,146 @@
+"""watchsim compare RUN|SCENE ...: what was changed between scenes or runs, and what came of it."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from watchsim.commands.console import FINE, InputError, announce_compile, print_json
+
+if TYPE_CHECKING:
+    from watchsim.studies.compare import Comparison, Side
+
+
+HELP = "what was changed between scenes or runs, and what came of it"
+LABELS = {"amplitude_deg": "amplitude", "rate_s_per_d": "rate", "beat_error_ms": "beat error", "period_s": "period"}
+LABELS |= {"power_in_W": "power put in", "friction_W": "lost to friction", "damping_W": "lost to damping"}
+LABELS |= {"impacts_W": "lost in impacts"}
+DIGITS, LONGEST = 6, 40  # of a number whose error is not known; letters of a value
+NOTE = "± is the error of the difference: of limit cycles that of the computation, of runs how much their beats scatter."
+
+
+def options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "sources", metavar="RUN|SCENE", nargs="+", help="results folders or scenes, two or more, the old one first"
+    )
+    parser.add_argument("-o", "--output", metavar="FILE", help="plots over each other: a name ending in .png, .svg or .pdf")
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
+
+
+def run(args: argparse.Namespace) -> int:
+    from watchsim.commands.inputs import secured_file
+    from watchsim.commands.plot import FORMATS
+    from watchsim.studies.compare import compare
+
+    target = None if args.output is None else Path(args.output)
+    if target is not None and target.suffix[1:] not in FORMATS:
+        raise InputError(f"-o {target}: the name of the plot ends in one of .{', .'.join(FORMATS)}.")
+    if len(args.sources) < 2:
+        raise InputError("compare: name two results folders or scenes at least.")
+    if target is not None:
+        secured_file(target, "the plots")
+    announce_compile()
+    sides = sides_of(args.sources, drawn=target is not None)
+    found = compare(*sides)
+    if args.json:
+        print_json(plain_numbers(found))
+    else:
+        print(text(found))
+    if target is not None:
+        _draw(found, target, silent=args.json)
+    return FINE
+
+
+def sides_of(names: Sequence[str], drawn: bool = False) -> list[Side]:
+    """What was named; scenes with a motion where that is to be drawn."""
+    from watchsim.commands.inputs import load_scene, read_run
+    from watchsim.results.folder import TRAJECTORY
+    from watchsim.studies.compare import side_of, with_run
+
+    for name in names:  # all that can be refused, before anything is computed
+        if not (Path(name) / TRAJECTORY).is_file():
+            load_scene(name)
+        elif drawn:
+            read_run(name)
+    sides = [side_of(name) for name in names]
+    return [with_run(side) for side in sides] if drawn else sides
+
+
+def plain_numbers(found: Comparison) -> dict[str, Any]:
+    """For `--json`."""
+    from watchsim.results.tables import plain
+
+    numbers: dict[str, Any] = plain(found.numbers())
+    return numbers
+
+
+def text(found: Comparison) -> str:
+    """Two tables for people: what was changed, and what came of it."""
+    from watchsim.studies.study_report import aligned
+
+    names = [side.name for side in found.sides]
+    changed = [[key, *map(_value, values), ""] for key, values in found.changed.items()]
+    lines = aligned(["changed", *names, ""], changed) if changed else ["  Nothing was changed in the scene."]
+    body = [_outcome(name, one.values, one.errors, one.difference, one.error) for name, one in found.outputs.items()]
+    lines += ["", *aligned(["result", *names, "difference", "±", ""], body)]
+    lines += [f"  {side.name}: {side.message}" for side in found.sides if side.message]
+    if any(one.error is not None for one in found.outputs.values()):
+        lines.append(f"  {NOTE}")
+    return "\n".join(lines)
+
+
+def _outcome(
+    name: str, values: Sequence[Any], errors: Sequence[float | None], difference: float | None, error: float | None
+) -> list[str]:
+    """A line: the label with its unit, every value to the digits that its error leaves, the difference and its error."""
+    unit, factor = _unit(name)
+    label = LABELS.get(name, name.removesuffix("_deg").removesuffix("_mm").replace("_", " "))
+    shown = [_number(value, one, factor) for value, one in zip(values, errors, strict=True)]
+    whole = "" if difference is None else _number(difference, error, factor, sign=True)
+    return [f"{label} ({unit})" if unit else label, *shown, whole, "" if error is None else f"{factor * error:.1g}", ""]
+
+
+def _unit(name: str) -> tuple[str, float]:
+    """The unit that an output is shown in, and what to multiply it by."""
+    from watchsim.studies.compare import MICRO, UNITS
+
+    unit = next((unit for ending, unit in UNITS.items() if name.endswith(ending)), "")
+    return ("µW", MICRO) if unit == "W" else (unit, 1.0)
+
+
+def _number(value: Any, error: float | None, factor: float, sign: bool = False) -> str:
+    import math
+
+    if value is None or isinstance(value, str):
+        return value or "none"
+    plus = "+" if sign else ""
+    if error is None or not 0.0 < factor * error < math.inf:
+        return f"{factor * value:{plus}.{DIGITS}g}".replace("-", "−")
+    decimals = min(max(0, 1 - math.floor(math.log10(factor * error))), 9)
+    return f"{factor * value:{plus}.{decimals}f}".replace("-", "−")
+
+
+def _value(value: Any) -> str:
+    """As the scene has it, without digits that only rounding explains; "none" where it has no such key."""
+    from watchsim.units import UnitError, split
+
+    shown = "none" if value is None else str(value)
+    try:
+        number, unit = split(value)
+        shown = f"{float(number.replace('−', '-')):.9g}{shown[len(number) :]}" if unit else shown
+    except (UnitError, ValueError, TypeError):
+        pass
+    return shown if len(shown) <= LONGEST else f"{shown[:LONGEST]}…"
+
+
+def _draw(found: Comparison, target: Path, silent: bool) -> None:
+    from watchsim.render.compare_plot import plot_comparison
+    from watchsim.render.style import save
+    from watchsim.storage.write import write_file
+
+    figure = plot_comparison(found)
+    write_file(target, lambda path: save(figure, path), "the plots")
+    if not silent:
+        print(target)
