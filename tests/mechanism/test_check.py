@@ -314,6 +314,40 @@ def test_every_pair_of_bodies_is_counted_and_candidates_are_few(name):
     assert wheel.most < wheel.reachable / 20
 
 
+@pytest.mark.parametrize("name", ["swiss_lever", "carriage", "coaxial", "geneva", "graham"])
+def test_where_only_what_comes_near_is_listed_the_same_is_near(name, monkeypatch):
+    """As of outlines of thousands of edges, of which all pairs would take gigabytes."""
+    scene = ws.load(PROFILES / name)
+    whole = compile_scene(scene)
+    monkeypatch.setattr("watchsim.mechanism.contacts.MOST_LISTED", 0)
+    monkeypatch.setattr("watchsim.mechanism.contacts.SLAB", 1000)
+    few = compile_scene(replace(scene))
+    assert len(few.model.near) <= len(few.model.contacts) < len(whole.model.contacts)
+    assert few.declared == whole.declared
+    assert few.model.contacts[few.model.near].tolist() == whole.model.contacts[whole.model.near].tolist()
+
+
+def polygon(corners: int) -> list[str]:
+    """A wavy disc of 5 mm."""
+    turns = [2.0 * math.pi * i / corners for i in range(corners)]
+    far = [5.0 + 0.5 * math.cos(15.0 * turn) for turn in turns]
+    return [f'["{r * math.cos(turn):.6f} mm", "{r * math.sin(turn):.6f} mm"]' for r, turn in zip(far, turns, strict=True)]
+
+
+def test_two_outlines_of_thousands_of_edges_are_listed_where_they_meet(tmp_path, capsys):
+    corners = ", ".join(polygon(2200))
+    bodies = "".join(
+        f'[bodies.{name}]\npolygon = [{corners}]\nposition = ["{x} mm", "0 mm"]\ninertia = "1 mg·cm²"\n'
+        for name, x in (("one", 0), ("other", 10.97))
+    )
+    text = f'[scene]\ntitle = "two"\nschema = 1\n{bodies}[[contacts]]\nbetween = ["one", "other"]\n[run]\nduration = "1 ms"\n'
+    (tmp_path / "scene.toml").write_text(text, encoding="utf-8")
+    assert main(["check", str(tmp_path), "--json"]) == FINE
+    pairs = json.loads(capsys.readouterr().out)["pairs"]
+    assert pairs["declared"] > 5_000_000
+    assert 0 < pairs["reachable"] < len(compile_scene(ws.load(tmp_path)).model.contacts) < 200_000
+
+
 def test_edges_of_outlines_that_touch_at_the_start_are_candidates():
     """Outlines are laid into the plane by shapely here; every body that touches another must have a candidate edge there."""
     scene = ws.load(PROFILES / "swiss_lever" / "scene.toml")

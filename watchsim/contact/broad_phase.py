@@ -8,6 +8,7 @@ can travel in the cell. Errs only on the side of too many.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -186,6 +187,7 @@ class _Span(NamedTuple):
         return np.asarray((self.low <= other.high) & (other.low <= self.high))
 
 
+Meeting = Callable[[Integers, Integers], NDArray[np.bool_]]
 Drawn = dict[tuple[bytes, float], Chords]  # of the primitives in those rows, that closely
 
 
@@ -196,34 +198,63 @@ def reachable(bodies: Records, primitives: Records, contacts: Records, pair: Any
     """
     part = contacts[pair.start : pair.stop]
     part_a, part_b = np.array(part.a), np.array(part.b)
+    a_first = (primitives.body == pair.a)[part_a]
+    on_a, row_a = named_rows(np.where(a_first, part_a, part_b), len(primitives))
+    on_b, row_b = named_rows(np.where(a_first, part_b, part_a), len(primitives))
+    return reach(bodies, primitives, pair, (on_a, on_b), float(pair.clearance), drawn)(row_a, row_b)
+
+
+def reach(
+    bodies: Records, primitives: Records, pair: Any, rows: tuple[Integers, Integers], clearance: float, drawn: Drawn
+) -> Meeting:
+    """Can primitives of body a and of body b of a pair come so near each other at any pose?
+
+    `rows`: which primitives of a and which of b; asked by their places in these, arrays that are broadcast.
+    """
     a, b = (seen_from(bodies, int(number), int(pair.frame)) for number in (pair.a, pair.b))
     if any(body.carrier >= 0 and bodies[body.carrier].motion != PIVOT for body in (a, b)):
-        return np.ones(len(part), bool)
-    a_first = (primitives.body == pair.a)[part_a]
-    on_a, on_b = np.where(a_first, part_a, part_b), np.where(a_first, part_b, part_a)
+        return _always
+    one, two = (_drawn(primitives, part, 0.5 * float(pair.clearance), drawn) for part in rows)
     if a.motion != PIVOT and (b.motion == PIVOT or a.motion == FIXED):
-        a, b, on_a, on_b = b, a, on_b, on_a
-    movers, row_a = named_rows(on_a, len(primitives))
-    others, row_b = named_rows(on_b, len(primitives))
-    one, two = (_drawn(primitives, rows, 0.5 * float(pair.clearance), drawn) for rows in (movers, others))
+        other_way = _meeting(bodies, b, a, two, one, clearance)
+        return lambda i, j: other_way(j, i)
+    return _meeting(bodies, a, b, one, two, clearance)
+
+
+def _always(i: Integers, j: Integers) -> NDArray[np.bool_]:
+    return np.ones(np.broadcast(i, j).shape, bool)
+
+
+def _meeting(bodies: Records, a: Any, b: Any, one: Chords, two: Chords, room: float) -> Meeting:
+    """The same of two bodies as they are seen, of which a turns if either does."""
     centre_a, centre_b = _centre(bodies, a), _centre(bodies, b)
     if a.motion == PIVOT and b.motion == PIVOT:
-        ring_a, ring_b = _ring(a, one, pair.clearance).of(row_a), _ring(b, two, 0.0).of(row_b)
-        distance = math.dist(centre_a, centre_b)
-        # Two rings whose centres are this far apart have a point in common.
-        apart = (distance > ring_a.high + ring_b.high) | (ring_a.low > distance + ring_b.high)
-        return np.asarray(~(apart | (ring_b.low > distance + ring_a.high)))
+        return _rings_meet(_ring(a, one, room), _ring(b, two, 0.0), math.dist(centre_a, centre_b))
     if a.motion == PIVOT and b.motion == FIXED:
         fixed = _away(two, _world(b, two.points) - centre_a, 0.0)
-        return _ring(a, one, pair.clearance).of(row_a).meets(fixed.of(row_b))
+        return _spans_meet(_ring(a, one, room), fixed)
     if a.motion == PIVOT and b.motion == SLIDE:
         strip = _across(two, _world(b, two.points) - centre_a, b, 0.0)
-        far = _ring(a, one, pair.clearance).of(row_a).high
-        return _Span(-far, far).meets(strip.of(row_b))
+        far = _ring(a, one, room).high
+        return _spans_meet(_Span(-far, far), strip)
     if a.motion == SLIDE and (b.motion == FIXED or (b.motion == SLIDE and _parallel(a, b))):
-        strip = _across(one, _world(a, one.points), a, pair.clearance)
-        return strip.of(row_a).meets(_across(two, _world(b, two.points), a, 0.0).of(row_b))
-    return np.ones(len(part), bool)
+        return _spans_meet(_across(one, _world(a, one.points), a, room), _across(two, _world(b, two.points), a, 0.0))
+    return _always
+
+
+def _spans_meet(one: _Span, two: _Span) -> Meeting:
+    return lambda i, j: one.of(i).meets(two.of(j))
+
+
+def _rings_meet(one: _Span, two: _Span, distance: float) -> Meeting:
+    """Two rings whose centres are this far apart have a point in common."""
+
+    def meet(i: Integers, j: Integers) -> NDArray[np.bool_]:
+        a, b = one.of(i), two.of(j)
+        apart = (distance > a.high + b.high) | (a.low > distance + b.high)
+        return np.asarray(~(apart | (b.low > distance + a.high)))
+
+    return meet
 
 
 def _drawn(primitives: Records, rows: NDArray[np.int64], sag: float, drawn: Drawn) -> Chords:

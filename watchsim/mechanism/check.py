@@ -54,8 +54,8 @@ def modelled_pairs(compiled: Compiled, names: Sequence[str]) -> ModelledPairs:
                 around = np.array([len(at_start)])
         here.append(at_start)
         bodies = (_named(compiled, pair, pair.a, names), _named(compiled, pair, pair.b, names))
-        declared = int(pair.stop - pair.start)
-        counts.append(PairCount(bodies, declared, len(near), round(float(np.median(around))), int(around.max()), len(at_start)))
+        numbers = (compiled.declared[p], len(near), round(float(np.median(around))), int(around.max()), len(at_start))
+        counts.append(PairCount(bodies, *numbers))
     return ModelledPairs(tuple(counts), _primitives(compiled, model.near), _primitives(compiled, np.concatenate(here)))
 
 

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from watchsim.contact.cell_frames import angle_of, choose_frames
+from watchsim.contact.cell_frames import angle_of
 from watchsim.contact.cells import choose_cells
 from watchsim.mechanism.backlash import with_racks
 from watchsim.mechanism.contacts import coordinates_of_lines, declared_contacts, features, line_springs, near_contacts
@@ -260,6 +260,7 @@ class Compiled:
     q: np.ndarray
     u: np.ndarray
     fastest: float  # 1/s, largest natural frequency of a spring, 0 without springs
+    declared: tuple[int, ...] = ()  # pairs of primitives of each pair of bodies
     against: tuple[tuple[int, int, float], ...] = ()  # coordinates given relative to a carrier: (own, carrier's or -1, angle)
     geared: tuple[tuple[int, float, float], ...] = ()  # further columns: ratio times that coordinate plus shift
 
@@ -305,10 +306,8 @@ def _compiled(scene: Scene, prefilter: bool) -> Compiled:
     slices = _slices(scene, bodies)
     primitives, layers, owners, sides = _primitives(scene, riding, size)
     owners = tuple(named.get(owner, owner) for owner in owners)
-    contacts, laws, pairs = declared_contacts(scene, riding, sides, primitives)
+    contacts, laws, pairs, counts = declared_contacts(scene, bodies, riding, sides, primitives, CLEARANCE * size)
     forced = forced_coordinates(scene, riding, bound, slices, size)
-    pairs.clearance = CLEARANCE * size
-    choose_frames(bodies, pairs)
     near = near_contacts(bodies, primitives, contacts, pairs)
     choose_cells(bodies, primitives, contacts, pairs, near)
     if not prefilter:
@@ -321,7 +320,8 @@ def _compiled(scene: Scene, prefilter: bool) -> Compiled:
     geared = tuple((int(bodies[bond.to].first), bond.given, bond.shift) for _, bond in own)
     slices |= {name: slice(len(q) + k, len(q) + k + 1) for k, (name, _) in enumerate(own)}
     return Compiled(
-        model, layers, owners, slices, size, frozen(q), frozen(u), forced.fastest, _against(riding, bodies, bound), geared
+        *(model, layers, owners, slices, size, frozen(q), frozen(u), forced.fastest, counts),
+        *(_against(riding, bodies, bound), geared),
     )
 
 

@@ -12,7 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.contact.broad_phase import Drawn, reachable
+from watchsim.contact.broad_phase import Drawn, reach, reachable
+from watchsim.contact.cell_frames import choose_frames
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Edge, Line, Point, middle
 from watchsim.model import (
@@ -217,10 +218,27 @@ def coordinates_of_lines(
 Integers = NDArray[np.int64]
 
 
+MOST_LISTED = 4_000_000  # pairs of primitives of one contact; of more, only those are listed that come near each other
+SLAB = 1 << 22  # pairs of primitives that are looked at together
+Near = Callable[[Integers, Integers], NDArray[np.bool_]]  # of primitives by their numbers, broadcast
+
+
+class Declared(NamedTuple):
+    """What the contacts of a scene declare; `counts`: how many pairs of primitives of each pair of bodies, listed or not."""
+
+    contacts: Records
+    laws: Records
+    pairs: Records
+    counts: tuple[int, ...]
+
+
 def declared_contacts(
-    scene: Scene, riding: tuple[Ride, ...], sides: dict[Side, Integers], primitives: Records
-) -> tuple[Records, Records, Records]:
-    """Every declared pair (circle on A, line or arc on B), grouped by pair of bodies; the laws; the pairs of bodies."""
+    scene: Scene, bodies: Records, riding: tuple[Ride, ...], sides: dict[Side, Integers], primitives: Records, clearance: float
+) -> Declared:
+    """Every declared pair (circle on A, line or arc on B), grouped by pair of bodies; the laws; the pairs of bodies.
+
+    Outlines of thousands of edges declare tens of millions: of so many only those that could come near each other are listed.
+    """
     laws = records(LAW, len(scene.contacts))
     found: dict[tuple[int, int], list[tuple[Integers, Integers, int]]] = {}
     number = {body.name: i for i, body in enumerate(scene.bodies)}
@@ -230,17 +248,46 @@ def declared_contacts(
         laws[group] = (contact.friction, contact.restitution, contact.tangential_restitution, kind, scene.nu)
         first, last = (sides[side] for side in contact.sides)
         i, j = (riding[number[side.body]].part_of for side in contact.sides)
-        found.setdefault((min(i, j), max(i, j)), []).append((*_touching(primitives, first, last), group))
+        found.setdefault((min(i, j), max(i, j)), []).append((first, last, group))
     pairs = records(BODY_PAIR, len(found))
-    blocks = [_ascending(parts, len(primitives), len(scene.contacts)) for parts in found.values()]
+    if not found:
+        return Declared(records(CONTACT, 0), laws, pairs, ())
+    pairs.a, pairs.b = np.array(list(found)).T
+    pairs.clearance = clearance
+    choose_frames(bodies, pairs)
+    blocks, counts = [], []
+    for pair, named in zip(pairs, found.values(), strict=True):
+        parts, count = [], 0
+        for first, last, group in named:
+            near = _near(bodies, primitives, pair, first, last) if len(first) * len(last) > MOST_LISTED else None
+            a, b, declared = _touching(primitives, first, last, near)
+            parts.append((a, b, group))
+            count += declared
+        blocks.append(_ascending(parts, len(primitives), len(scene.contacts)))
+        counts.append(count)
     ends = np.cumsum([len(a) for a, _, _ in blocks], dtype=np.int64)
-    contacts = records(CONTACT, int(ends[-1]) if blocks else 0)
-    if blocks:
-        pairs.a, pairs.b = np.array(list(found)).T
-        pairs.start, pairs.stop = np.append(0, ends[:-1]), ends
-        contacts.a, contacts.b, contacts.group = (np.concatenate(parts) for parts in zip(*blocks, strict=True))
-        _add_shapes(primitives, contacts)
-    return contacts, laws, pairs
+    contacts = records(CONTACT, int(ends[-1]))
+    pairs.start, pairs.stop = np.append(0, ends[:-1]), ends
+    contacts.a, contacts.b, contacts.group = (np.concatenate(parts) for parts in zip(*blocks, strict=True))
+    _add_shapes(primitives, contacts)
+    return Declared(contacts, laws, pairs, tuple(counts))
+
+
+def _near(bodies: Records, primitives: Records, pair: Any, first: Integers, last: Integers) -> Near:
+    """Can two primitives of two sides come within twice the pair's clearance at any pose? Twice: what `near_contacts` takes,
+    and what symmetry makes of it, is then listed whatever the rounding."""
+    on_a = primitives.body == pair.a
+    rows = (first, last) if on_a[first[0]] else (last, first)
+    meet = reach(bodies, primitives, pair, rows, 2.0 * float(pair.clearance), {})
+    place = np.zeros(len(primitives), np.int64)
+    for part in rows:
+        place[part] = np.arange(len(part))
+
+    def near(circles: Integers, edges: Integers) -> NDArray[np.bool_]:
+        one, two = (circles, edges) if on_a[circles.flat[0]] else (edges, circles)
+        return meet(place[one], place[two])
+
+    return near
 
 
 def _ascending(
@@ -266,26 +313,34 @@ def _add_shapes(primitives: Records, contacts: Records) -> None:
     contacts.reduced = np.where(arcs, radius * own[met] / total, radius)
 
 
-def _touching(primitives: Records, first: Integers, last: Integers) -> tuple[Integers, Integers]:
-    """All pairs (circle, other) between two sets of primitives that have a gap function."""
+def _touching(primitives: Records, first: Integers, last: Integers, near: Near | None) -> tuple[Integers, Integers, int]:
+    """All pairs (circle, other) between two sets of primitives that have a gap function, of these those that are `near` each
+    other; and how many there are."""
     # Two convex arcs are one contact, not two: the rounder one plays the circle, of equal ones the first set's.
-    a, b = _circles_and_edges(primitives, first, last, np.less_equal)
-    c, d = _circles_and_edges(primitives, last, first, np.less)
-    return np.concatenate([a, c]), np.concatenate([b, d])
+    a, b, some = _circles_and_edges(primitives, first, last, np.less_equal, near)
+    c, d, others = _circles_and_edges(primitives, last, first, np.less, near)
+    return np.concatenate([a, c]), np.concatenate([b, d]), some + others
 
 
 def _circles_and_edges(
-    primitives: Records, circles: Integers, edges: Integers, rounder: Callable[..., NDArray[np.bool_]]
-) -> tuple[Integers, Integers]:
+    primitives: Records, circles: Integers, edges: Integers, rounder: Callable[..., NDArray[np.bool_]], near: Near | None
+) -> tuple[Integers, Integers, int]:
     """The pairs whose first plays the circle; of two convex arcs only where its radius is `rounder` than the other one's."""
     kind, radius, convex = primitives.kind, primitives.radius, primitives.side > 0.0
     circles = circles[(kind[circles] == CORNER) | ((kind[circles] == ARC) & convex[circles])]
     edges = edges[kind[edges] != CORNER]
-    r, straight, arc = radius[circles][:, None], kind[edges] != ARC, (kind[circles] == ARC)[:, None]
-    fits = straight | convex[edges] | (r < radius[edges])
-    fits &= ~(arc & ~straight & convex[edges]) | rounder(r, radius[edges])
-    row, column = np.nonzero(fits)
-    return circles[row], edges[column]
+    straight, found, count = kind[edges] != ARC, [(circles[:0], edges[:0])], 0
+    for part in np.split(circles, range(step := max(1, SLAB // max(1, len(edges))), len(circles), step)):
+        r, arc = radius[part][:, None], (kind[part] == ARC)[:, None]
+        fits = straight | convex[edges] | (r < radius[edges])
+        fits &= ~(arc & ~straight & convex[edges]) | rounder(r, radius[edges])
+        count += int(np.count_nonzero(fits))
+        if near is not None and fits.size:
+            fits &= near(part[:, None], edges[None, :])
+        row, column = np.nonzero(fits)
+        found.append((part[row], edges[column]))
+    a, b = (np.concatenate(columns) for columns in zip(*found, strict=True))
+    return a, b, count
 
 
 def near_contacts(bodies: Records, primitives: Records, contacts: Records, pairs: Records) -> Integers:
