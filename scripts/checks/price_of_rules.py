@@ -142,12 +142,6 @@ RULES = (
         "_slides_into_jam(system, m, i, problem):\n            return False",
         "_slides_into_jam(system, m, i, problem) and ON:\n            return False",
     ),
-    _rule(
-        "least force jams",
-        FORCES,
-        "if not pressed and _slides_into_jam(system, m, i, problem):",
-        "if not pressed and _slides_into_jam(system, m, i, problem) and ON:",
-    ),
     _rule("jam watched", MOTION, "-1.0 if slides_into_jam else", "-1.0 if slides_into_jam and ON else"),
     _rule(
         "slides by its end of the cone",

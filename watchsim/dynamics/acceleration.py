@@ -219,8 +219,6 @@ def _mode_of(closed, i, m, elements, bearings, system, problem):
     if not pressed and _row_acceleration(system, rows, N) > ACCELERATION_ROUNDING * row_terms(system, drag, m, rows, N):
         return OPEN
     if e < 0:
-        if not pressed and _slides_into_jam(system, m, i, problem):
-            return OPEN  # the least force would jam it
         return BACKWARD if closed.kin[i].gT_dot < 0.0 else FORWARD
     slip = problem.friction_sign[T] * _row_acceleration(system, rows, T)  # as the problem has it
     # lambda_T is the difference of terms as large as the friction cone.
