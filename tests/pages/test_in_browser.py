@@ -14,6 +14,7 @@ import imageio.v3 as iio
 import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
+from matplotlib.path import Path as ClosedPath
 from pages.browser import opened
 from pages.pace import played
 from scipy.ndimage import maximum_filter, minimum_filter
@@ -339,6 +340,43 @@ def test_solids_are_turned_chosen_and_put_away(run: Trajectory, written: Path) -
         page.keyboard.press("3")
         page.wait_for_selector('#space[aria-pressed="false"]')
         assert not page.is_visible("#solid") and silent(page)
+
+
+def crossing(one: Any, other: Any) -> bool:
+    (a, b), (c, d) = (np.array(line) for line in (one, other))
+    side = lambda p, q, r: np.sign((q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]))  # noqa: E731
+    return bool(side(a, b, c) * side(a, b, d) < 0 and side(c, d, a) * side(c, d, b) < 0)
+
+
+@pytest.mark.parametrize("profile", ["swiss_lever", "coaxial", "graham", "pin_pallet", "cylinder"])
+def test_names_stand_apart_and_on_their_parts(profile: str, tmp_path: Path) -> None:
+    scene = load(Path(str(profiles_dir())) / profile / "scene.toml")
+    run = simulate(scene, duration=1.2, record="all")
+    with opened(report(run, tmp_path / "page.html")) as page:
+        page.focus("#stage")
+        page.keyboard.press("l")
+        page.wait_for_selector('#label[aria-pressed="true"]')
+        for t in np.linspace(*page.evaluate("watchsim.window"), 10).tolist():
+            page.evaluate("t => watchsim.seek(t)", t)
+            names = page.evaluate("watchsim.names()")
+            assert len(names) >= 3
+            for i, one in enumerate(names):
+                for other in names[:i]:
+                    (a, b, c, d), (e, f, g, h) = one["box"], other["box"]
+                    assert c < e or g < a or d < f or h < b, (one["text"], other["text"])
+                    assert not crossing((one["from"], one["at"]), (other["from"], other["at"])), (one["text"], other["text"])
+                if one["body"] < 0:
+                    continue
+                body = run.scene.bodies[one["body"]]
+                seen = lambda points: page.evaluate("([n, p]) => watchsim.seen(n, p)", [body.name, points])  # noqa: B023, E731
+                shapes = [ClosedPath(seen(polyline(loop, 1e-5).tolist())) for loop in loops_of(body) if loop.closed]
+                pivot = np.hypot(*(np.array(seen([[0.0, 0.0]])[0]) - one["at"])) < 0.1
+                assert (
+                    pivot
+                    or any(shape.contains_point(one["at"], radius=1.0) for shape in shapes)
+                    or any(shape.contains_point(one["at"], radius=-1.0) for shape in shapes)
+                ), one["text"]
+        assert page.said == []
 
 
 def test_an_audit_of_accessibility_passes(written: Path) -> None:

@@ -161,7 +161,7 @@ def _entry(archive: bytes, info: zipfile.ZipInfo) -> dict[str, Any]:
 ASSETS = "watchsim.pages.assets"
 PLOTTING = ("uplot/LICENSE", "uplot/uPlot.iife.min.js", "uplot/uPlot.min.css")
 SCRIPTS = (
-    *("bytes", "motion", "coil", "zigzag", "scene", "solids", "view", "contacts", "clock"),
+    *("bytes", "motion", "coil", "zigzag", "scene", "solids", "view", "contacts", "names", "clock"),
     *("sound", "curves", "plots", "strip", "player", "files", "main"),
 )
 

@@ -25,6 +25,7 @@ from watchsim.pages.solids import packed_solids
 from watchsim.render.marks import ContactMarks, goes_round
 from watchsim.render.movie import busy
 from watchsim.render.palette import BLUED, FIXED, Finish, looks
+from watchsim.render.part_names import part_names
 from watchsim.render.parts import Part, is_round, loops_of, outline, parts, spoke
 from watchsim.render.rows import kept_rows, off_line
 from watchsim.render.view import (
@@ -476,6 +477,7 @@ def player_data(
         "solids": packed_solids(scene, picture_size(run, window)),
         "coils": [_coil(spring, names) for spring in hairsprings(scene)],
         "line_springs": [_zigzag(spring, names) for spring in zigzags(scene)],
+        "names": [[one.text, -1 if one.body is None else names.index(one.body), *one.point] for one in part_names(scene)],
         "view": _view(run, window),
         "contacts": touching(run, window),
         "events": instants(run, window),

@@ -206,6 +206,19 @@ class PalletStones:
 
     def stone(self, name: str) -> tuple[Body, Loop]:
         """The lever and the outline of its "entry stone" or "exit stone". ValueError where there is no such stone."""
+        compiled, lever, there = self._rest(name)
+        place = np.array(there)
+
+        def distance(loop: Loop) -> float:
+            return math.dist(nearest(outline([loop], FINE * compiled.size), place), place)
+
+        return lever, min(loops_of(lever), key=distance)
+
+    def place(self, name: str) -> Point:
+        """Where that stone holds the wheel, in the lever's frame (m). ValueError as in `stone`."""
+        return self._rest(name)[2]
+
+    def _rest(self, name: str) -> tuple[Compiled, Body, Point]:
         scene, (compiled, found) = self._scene, self._measured
         if found.parts is None or found.passages is None:
             what, why = found.missing[-1]
@@ -217,12 +230,7 @@ class PalletStones:
         x, y, angle = frames(scene, compiled.slices, compiled.relative(q[None]))[lever.name][0].tolist()
         c, s = math.cos(angle), math.sin(angle)
         dx, dy = rest.x - x, rest.y - y
-        there = np.array([c * dx + s * dy, -s * dx + c * dy])
-
-        def distance(loop: Loop) -> float:
-            return math.dist(nearest(outline([loop], FINE * compiled.size), there), there)
-
-        return lever, min(loops_of(lever), key=distance)
+        return compiled, lever, (c * dx + s * dy, -s * dx + c * dy)
 
     @cached_property
     def _measured(self) -> tuple[Compiled, Function]:

@@ -4,8 +4,8 @@ const root = document.documentElement;
 root.classList.add("scripted");
 const data = JSON.parse($("data").textContent);
 
-const motion = new Motion(data), view = new View(data), scenery = new Scenery(data), contacts = new Contacts(data), clock = new Clock(data), sound = new Sound(data), solids = new Solids(data, $("solid"));
-const player = new Player(data, { motion, view, scenery, solids, contacts, clock, sound });
+const motion = new Motion(data), view = new View(data), scenery = new Scenery(data), contacts = new Contacts(data), clock = new Clock(data), sound = new Sound(data), solids = new Solids(data, $("solid")), names = new Names(data);
+const player = new Player(data, { motion, view, scenery, solids, names, contacts, clock, sound });
 const curves = new Curves(data, motion, contacts, view);
 const plots = new Plots($("plots"), data, curves, (t) => { player.toggle(false); player.seek(t); });
 const strip = new Strip($("plots"), data, sound, (t) => { player.toggle(false); player.seek(t); });
@@ -81,7 +81,7 @@ const words = () => {
   $("play").setAttribute("aria-label", player.playing ? "Pause" : "Play");
   $("sign").setAttribute("d", player.playing ? "M4 3h4v14H4zM12 3h4v14h-4z" : "M5 3v14l12-7z");
   $("speed").value = String(player.speedIndex);
-  for (const [id, on] of [["space", solids.on], ["adapt", player.adaptive], ["touch", player.points], ["push", player.arrows], ["tick", sound.on]]) $(id).setAttribute("aria-pressed", String(on));
+  for (const [id, on] of [["space", solids.on], ["label", names.on], ["adapt", player.adaptive], ["touch", player.points], ["push", player.arrows], ["tick", sound.on]]) $(id).setAttribute("aria-pressed", String(on));
   const followed = player.chosen >= 0 && view.anchor !== null;
   $("release").hidden = !followed;
   if (followed) $("release").textContent = `Following ${data.bodies[player.chosen].name} ✕`;
@@ -194,6 +194,7 @@ const shift = (x, y, moves = false) => { if (solids.on && !moves) solids.orbit(x
 const nudge = (way) => { player.toggle(false); player.seek(player.t + (way * (plots.range[1] - plots.range[0])) / 500); };
 
 const toggles = {
+  label: () => { names.on = names.any && !names.on; dirty = true; },
   space: () => { if (!solids.turn(!solids.on)) $("space").disabled = true; dirty = true; },
   adapt: () => player.setAdaptive(!player.adaptive),
   touch: () => { player.points = !player.points; dirty = true; },
@@ -210,7 +211,7 @@ for (const [id, act] of Object.entries(presses)) $(id).addEventListener("click",
 const keys = {
   " ": () => player.toggle(), ",": () => player.step(-1), ".": () => player.step(1), "[": () => player.stepPhase(-1), "]": () => player.stepPhase(1), "<": () => player.setSpeed(player.speedIndex - 1), ">": () => player.setSpeed(player.speedIndex + 1),
   Home: () => player.seek(player.start), End: () => player.seek(player.end), "+": () => zoomBy(1.25), "=": () => zoomBy(1.25), "-": () => zoomBy(0.8), "\u2212": () => zoomBy(0.8), 0: fit,
-  n: followNext, Escape: release, x: () => player.chosen >= 0 && player.fade(player.chosen), a: toggles.adapt, c: toggles.touch, f: toggles.push, s: toggles.tick, t: toggles.theme, 3: toggles.space,
+  n: followNext, Escape: release, x: () => player.chosen >= 0 && player.fade(player.chosen), a: toggles.adapt, c: toggles.touch, f: toggles.push, s: toggles.tick, t: toggles.theme, 3: toggles.space, l: toggles.label,
 };
 const arrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 document.addEventListener("keydown", (event) => {
@@ -236,6 +237,7 @@ $("speed").addEventListener("change", () => player.setSpeed(Number($("speed").va
 for (const b of curves.movers) $("whose").add(new Option(data.bodies[b].name, String(b)));
 $("whose").addEventListener("change", () => showPlots(Number($("whose").value)));
 $("space").disabled = !solids.any;
+$("label").disabled = !names.any;
 $("adapt").disabled = !clock.uneven;
 $("push").disabled = !contacts.known;
 $("tick").disabled = !sound.any;
@@ -280,6 +282,7 @@ window.watchsim = {
   seen: (name, points) => { const poses = motion.poses(player.t), b = data.bodies.findIndex((body) => body.name === name); view.aim(poses); return points.map(([x, y]) => view.screen(...view.point(poses, b, x, y))); },
   closed: (t) => { const poses = motion.poses(t); return contacts.all.filter((one) => one.holds(t)).map((one) => ({ name: one.name, force: one.press(t), place: one.touch(view, poses).slice(0, 2) })); },
   value: (plot, t) => curves.of(plots.body)[plot].lines[0].value(t),
+  names: () => { const poses = motion.poses(player.t); view.aim(poses); return names.placed(ctx, view, poses, look, false); },
   coils: () => { const poses = motion.poses(player.t); return scenery.coils.map((coil) => coil.pathData(poses)); },
   zigzags: () => { const poses = motion.poses(player.t); return scenery.zigzags.map((one) => one.pathData(view, poses)); },
   parts: () => scenery.parts.map(({ body, layer, pale }) => ({ body, layer, pale: Boolean(pale) })),

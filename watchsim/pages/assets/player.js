@@ -80,6 +80,7 @@ class Player {
     ctx.fillRect(0, 0, this.view.width, this.view.height);
     this.scenery.draw(ctx, this.view, poses, own);
     if (this.points || this.arrows) this.contacts.draw(ctx, this.view, poses, this.t, own, this.points, this.arrows);
+    if (this.names.on) this.names.draw(ctx, this.view, poses, own, this.playing);
     this.ruler(ctx, look);
   }
 
