@@ -144,3 +144,17 @@ def test_what_the_shell_has_switched_off_stays_off(tmp_path: Path) -> None:
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     done = subprocess.run([sys.executable, "-c", code, *arguments], env=environment, cwd=ROOT, capture_output=True, check=False)
     assert done.returncode == 0 and (tmp_path / "out" / "summary.json").is_file()
+
+
+def test_a_signal_while_the_start_script_goes_on_waits() -> None:
+    """Between its import of the entry point and the call, where scripts of installers shorten sys.argv[0]."""
+    code = "from watchsim.process import process; import os, signal; os.kill(os.getpid(), signal.SIGINT); process()"
+    done = subprocess.run(
+        [sys.executable, "-c", code, "check", str(LEVER)],
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=60,
+    )
+    assert (done.returncode, done.stdout) == (130, "") and "Traceback" not in done.stderr

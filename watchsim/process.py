@@ -1,8 +1,14 @@
 """How does a process of the command line begin and end?
 
 It hears signals before it loads anything, and when its command is done it is done: nothing that runs while an interpreter is
-taken apart can change the exit status any more.
+taken apart can change the exit status any more. Only what calls `process` imports this module: from here on signals wait.
 """
+
+import _signal as signal  # type: ignore[import-not-found]  # built in: nothing to load
+
+HEARD = (signal.SIGINT, signal.SIGTERM)
+if hasattr(signal, "pthread_sigmask"):  # what comes while nobody listens yet waits; so, too, while a start script goes on
+    signal.pthread_sigmask(signal.SIG_BLOCK, HEARD)
 
 TYPE_CHECKING = False  # as in typing, whose import would leave Ctrl-C unheard for some milliseconds
 if TYPE_CHECKING:
@@ -16,16 +22,11 @@ HELD = {MMAP_THRESHOLD: 32 << 20, TRIM_THRESHOLD: 128 << 20}  # bytes
 
 def process() -> "NoReturn":
     """Run the command line of this process, and end it."""
-    import _signal as signal  # type: ignore[import-not-found]  # built in: nothing to load
-
-    heard = (signal.SIGINT, signal.SIGTERM)
-    if hasattr(signal, "pthread_sigmask"):  # what comes while nobody listens yet waits
-        signal.pthread_sigmask(signal.SIG_BLOCK, heard)
     from watchsim import stopping
 
     stopping.install()
     if hasattr(signal, "pthread_sigmask"):
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, heard)
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, HEARD)
     import atexit
     import gc
     import os
