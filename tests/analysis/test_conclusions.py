@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -65,3 +66,20 @@ def test_through_real_gears_it_goes_as_driven_directly(name: str, pairs: int) ->
     direct = concluded(scene, 8.0, "statistics")
     assert numbers["amplitude_deg"] == pytest.approx(direct["amplitude_deg"], rel=0.02)
     assert numbers["beats"] == direct["beats"]
+
+
+@pytest.mark.parametrize("record", ["all", "statistics"])
+def test_an_escapement_that_does_nothing_has_no_rate(record: str) -> None:
+    """The wheel stands 90 mm away from the anchor of a pendulum that swings on its own."""
+    run = ws.simulate(profile("graham").set("bodies.wheel.position.1", "-90 mm"), 20.0, record=record, to_the_end=False)
+    numbers = ws.summary(run)
+    assert (numbers["amplitude_deg"], numbers["rate_s_per_d"]) == (None, None)
+    assert "wheel never touched anything" in numbers["timing_message"]
+    assert numbers["verdict"] == "trips"
+    assert numbers["verdict_details"]["t_s"] == pytest.approx(0.0, abs=0.01)
+
+
+def test_without_a_lift_angle_it_is_still_said_that_it_has_not_settled() -> None:
+    """What swings through its rest position is judged; a click on its ratchet never does."""
+    assert concluded(replace(profile("graham"), lift_angle=None), 30.0, "statistics")["verdict"] == "unsettled"
+    assert concluded(profile("ratchet"), 1.0, "statistics")["verdict"] is None

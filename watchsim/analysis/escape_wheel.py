@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from watchsim.analysis.timing import Beats, holding_at_end, is_recorded, nominal_period
-from watchsim.scene.roles import drive_direction, keeps_time, only_presses, oscillators, pitch, roles
+from watchsim.scene.roles import drive_direction, keeps_time, may_lock, only_presses, oscillators, pitch, roles
 from watchsim.simulation.recording import FEWEST_TURNS, Events
 from watchsim.simulation.state import EventKind
 from watchsim.simulation.trajectory import Array, Trajectory
@@ -36,6 +36,14 @@ def why_no_timing(run: Trajectory, found: Beats | None, numbers: Mapping[str, An
     if numbers["rate_s_per_d"] is not None:
         return f"no amplitude in degrees: {found.body} slides"
     return f"no {what}: {_missing(run, found, start)}"
+
+
+def never_touched(run: Trajectory) -> str | None:
+    """A sentence where the scene has a driven wheel and an oscillator, and nothing in it touched anything in the whole run."""
+    parts, kinds = roles(run.scene), run.sums.get("events_by_kind", {})
+    if not may_lock(run.scene) or not kinds or kinds.get("impact") or kinds.get("close"):
+        return None
+    return f"no amplitude and rate of a watch: {parts.wheel} never touched anything, and {parts.oscillator} swings by itself"
 
 
 def _passages(run: Trajectory, found: Beats) -> int:

@@ -12,7 +12,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from watchsim.analysis.escape_wheel import missed_beats, standstill, why_no_timing
+from watchsim.analysis.escape_wheel import missed_beats, never_touched, standstill, why_no_timing
 from watchsim.analysis.flows import efficiency
 from watchsim.analysis.headlines import beats_csv, doubts, headlines, phases_csv
 from watchsim.analysis.timegrapher import timegrapher
@@ -302,10 +302,11 @@ def _timing(run: Trajectory) -> dict[str, Any]:
     found = beats(run)
     window = last_window(run, found.nominal_period)
     stands = standstill(run, found)
-    values = _timing_of(averages(found, window))
+    idle = never_touched(run)
+    values = _timing_of(None if idle else averages(found, window))
     return {
         **values,
-        "timing_message": why_no_timing(run, found, values, window[0]),
+        "timing_message": idle or why_no_timing(run, found, values, window[0]),
         "beats": found.before + len(found),
         "whole_run": whole_run(run, found),
         "timegrapher": timegrapher(run, found, window),

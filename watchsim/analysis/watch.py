@@ -25,7 +25,7 @@ from watchsim.analysis.timing import (
 )
 from watchsim.geometry.loops import Loop, points_along
 from watchsim.mechanism.compile import Compiled, compile_scene
-from watchsim.scene.roles import drive_direction, keeps_time, oscillators, partners, pitch, roles, toothed_sides
+from watchsim.scene.roles import drive_direction, keeps_time, may_lock, oscillators, partners, pitch, roles, toothed_sides
 from watchsim.scene.scene import STATISTICS, Scene
 from watchsim.scene.teeth import touching_loops, train
 from watchsim.simulation import EVENT_DRIVEN
@@ -181,6 +181,7 @@ def at_lever(found: Arms, row: int, other: str, lever: str, way: float) -> float
 
 
 SMALLEST_ADVANCE = 0.01  # rad, for a wheel whose pitch is not known
+FEWEST_SWINGS = 4  # through the rest position, of what swings
 
 
 @dataclass(frozen=True)
@@ -280,9 +281,15 @@ class Watch:
 
 
 def watch_of(run: Trajectory, found: Beats) -> Watch | None:
-    """None where no driven wheel keeps an oscillator going."""
+    """None where no driven wheel keeps an oscillator going.
+
+    A click that a spring presses on its wheel never passes its rest position; what does, swings, though the scene names neither
+    a lever nor a lift angle.
+    """
     parts = roles(run.scene)
-    if parts.oscillator is None or parts.wheel is None or not keeps_time(run.scene) or not found.angular:
+    if parts.oscillator is None or parts.wheel is None or not found.angular:
+        return None
+    if not keeps_time(run.scene) and (len(found) < FEWEST_SWINGS or not may_lock(run.scene)):
         return None
     if found.body != parts.oscillator:
         return None

@@ -266,10 +266,19 @@ def pitch(scene: Scene, wheel: str) -> float | None:
 
 def toothed_sides(scene: Scene, wheel: str) -> list[Side]:
     """The sides of contacts that decide about a wheel's pitch."""
+    return _locked_sides(scene, wheel) or _sides(scene, wheel)
+
+
+def may_lock(scene: Scene) -> bool:
+    """Is a contact declared in which lever or oscillator could lock the wheel?"""
+    wheel = roles(scene).wheel
+    return wheel is not None and bool(_locked_sides(scene, wheel))
+
+
+def _locked_sides(scene: Scene, wheel: str) -> list[Side]:
     found = roles(scene)
     ends = {one for one in (found.lever, found.oscillator) if one is not None}
-    ends = ends.union(*(_carried(scene, one) for one in ends)) if found.wheel == wheel else set()
-    return _sides(scene, wheel, ends) or _sides(scene, wheel)
+    return _sides(scene, wheel, ends.union(*(_carried(scene, one) for one in ends))) if found.wheel == wheel else []
 
 
 def swings(scene: Scene) -> bool:

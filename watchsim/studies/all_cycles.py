@@ -83,7 +83,7 @@ BEYOND = 3  # samples in a row where the mechanism does not work: larger swings 
 EXACT = 1e-12  # of the amplitude: how closely a cycle is looked for
 EDGE = 1e-5  # of the amplitude: how closely the end of regular work is looked for
 ROOT = 1e-7  # of the amplitude: more left than that, and it is no cycle but a jump of the map
-ALIKE = 1e-6  # of the amplitude: cycles closer to each other are one
+ALIKE = 1e-5  # of the amplitude: cycles closer to each other are one, and oscillations that differ by less are alike
 BESIDE = 1e-4  # of the amplitude: where the search begins for two that have split off from an unstable one
 DOUBLINGS = 18  # of the number of oscillations that are followed along the samples
 HERE = 0.005  # of the amplitude: what ends so near to a stable cycle goes there
@@ -179,8 +179,11 @@ class Survey:
                 brackets += [b for one in found if (one.multiplier or 0.0) < -1.0 for b in self._beside(one.amplitudes[0])]
             for low, high in brackets:
                 amplitude = self._root(low, high, oscillations)
-                if amplitude is not None and not any(self._is_of(one, amplitude) for one in found):
-                    found.append(self._cycle(amplitude, oscillations))
+                if amplitude is None or any(self._is_of(one, amplitude) for one in found):
+                    continue
+                cycle = self._cycle(amplitude, oscillations)
+                if oscillations == 1 or np.ptp(cycle.amplitudes) > ALIKE * amplitude:
+                    found.append(cycle)
         return tuple(sorted(found))
 
     def _is_of(self, cycle: Found, amplitude: float) -> bool:

@@ -243,7 +243,8 @@ def followed(oscillate: ReturnMap, amplitude: float) -> Array | None:
     return reached
 
 
-NUDGE = 1e-3  # of the amplitude: how far apart the map's slope is measured
+NUDGES = (1e-3, 1e-4, 1e-5)  # of the amplitude: how far apart the map's slope is measured, until it is even there
+SMOOTH = 1e-3  # of the slope: what two steps may differ by
 ALIKE = 1e-9  # of the amplitude: teeth that differ by less are alike
 CLOSED = 1e-11  # of the amplitude: what a turn of a wheel with unequal teeth must close to
 MOST_POLISH = 12  # turns
@@ -290,17 +291,23 @@ def glanced(oscillate: ReturnMap, found: Fixed) -> Polished:
 
 def slope_at(oscillate: ReturnMap, amplitude: float, oscillations: int = 1) -> Slope | Return:
     """Slopes at that amplitude; the return that went wrong where one does."""
-    step = NUDGE * amplitude
-    ends = []
-    for away in (-step, step, -0.5 * step, 0.5 * step):
-        got = oscillate(amplitude + away, oscillations)
-        if got.trouble:
-            return got
-        ends.append(got)
-    wide = (ends[1].amplitude - ends[0].amplitude) / (2.0 * step)
-    narrow = (ends[3].amplitude - ends[2].amplitude) / step
-    period = (ends[3].time - ends[2].time) / (step * oscillations)
-    return Slope((4.0 * narrow - wide) / 3.0, abs(narrow - wide) / 3.0, period)
+    found = None
+    for nudge in NUDGES:
+        step = nudge * amplitude
+        ends = []
+        for away in (-step, step, -0.5 * step, 0.5 * step):
+            got = oscillate(amplitude + away, oscillations)
+            if got.trouble:
+                return found or got
+            ends.append(got)
+        wide = (ends[1].amplitude - ends[0].amplitude) / (2.0 * step)
+        narrow = (ends[3].amplitude - ends[2].amplitude) / step
+        period = (ends[3].time - ends[2].time) / (step * oscillations)
+        found = Slope((4.0 * narrow - wide) / 3.0, abs(narrow - wide) / 3.0, period)
+        if found.error <= SMOOTH:
+            break
+    assert found is not None
+    return found
 
 
 def turn_of(oscillate: ReturnMap, amplitude: float) -> tuple[int, Return]:
