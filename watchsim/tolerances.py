@@ -14,6 +14,8 @@ JOINT_RESOLUTION = 3e-11
 # m. Six decimals of a millimetre place a point within 0.71 nm, two outlines within 1.41 nm of each other; position and angle of
 # a body add their own. Large: a contact begins where none was drawn; small: resting contacts are refused.
 DRAWING_ROUNDING = 2e-9
+# m: sizes of scenes beyond which that, and what is looked at more finely than it, goes with the size. Large, small: as above.
+SMALLEST_DRAWN, LARGEST_DRAWN = 1e-3, 1.0
 # Of the size, more than any tolerance of a run: a pair that comes this close can touch. Large: more candidates; small: contacts
 # are lost.
 CLEARANCE = 2e-3
@@ -111,18 +113,32 @@ BEHIND_LEAST, BEHIND_MOST = 2e-8, 2e-5
 BEHIND_PER_TOLERANCE = 20.0
 # Times the joint of outlines: `extent`. Large: contacts stick out; small: they slip through joints.
 EXTENT_PER_JOINT = 4.0
-# Of the size per second: slower is zero. Large: freezes slow sliding; small: below the rounding of velocities.
+# Of the size per unit of time: slower is zero. Large: freezes slow sliding; small: below the rounding of velocities.
 SPEED_ZERO = 1e-8
 # The same, for each of the tolerance: velocities drift that much in a step. Large, small: as above.
 SPEED_PER_TOLERANCE = 20.0
 # Of a contact's force terms. Large: late detachment; small: rounding decides.
 FORCE_ZERO = 1e-10
-# s: rebounds that would end sooner are ended by rule. Large: changes timing; small: more impacts.
+# rad of the scene's slowest spring (of what its forces, else its velocities do, where there is none): the scene's own unit of
+# time, in which all tolerances count. Large, small: as those.
+UNIT_PHASE = 10.0
+# Of the rate of the fastest spring: slower ones do not count for that. Large: freezes what is slow; small: below rounding.
+SLOWEST_RATE = 1e-2
+# Of the unit of time: rebounds that would end sooner are ended by rule. Large: changes timing; small: more impacts.
 ACCUMULATION_TIME = 1e-6
-# Of the size per second: faster rebounds are never ended by rule. Large: changes timing; small: more impacts.
+# Of the size per unit of time: faster rebounds are never ended by rule. Large: changes timing; small: more impacts.
 ACCUMULATION_SPEED = 0.1
 # Of a coordinate's force terms: less accelerates nothing. Large: creeping bodies freeze; small: nothing ever sleeps.
 SLEEP = 1e-9
+# Of that: the same where contacts allow the acceleration, which is then no rounding of their forces. Large: unstable rest
+# lasts; small: rounding ends it.
+SLEEP_LOOSE = 1e-4
+# Of the largest gap acceleration that bodies could have: less is allowed by a contact. Large: rounding wakes; small: unstable
+# rest lasts.
+LOOSE = 1e-2
+# Of the scale times its rate: what is slower is followed more closely, in proportion, to `SLOW_ERROR` of the scale. Large: more
+# steps; small: what leaves an unstable rest leaves at the wrong time.
+SLOW, SLOW_ERROR = 1e-3, 1e-14
 # rad of the fastest oscillation between rows. Large: rates between rows off; small: long tables.
 FINEST_ROWS, COARSEST_ROWS = 0.0125, 0.1
 
@@ -189,8 +205,8 @@ RATE_ROUNDING = 1e-12
 REBOUND_ROUNDING = 1e-10
 # rad: normals of outlines turn that much by rounding, which makes gap rates of slips. Large, small: as above.
 TILT_ROUNDING = 1e-13
-# Of the size per second: the same where nothing moves. Large, small: as above.
-RATE_FLOOR = 1e-15
+# Of `accumulation_speed`: the same where nothing moves. Large, small: as above.
+RATE_FLOOR = 1e-14
 # Times that: rates that cannot all be zero. Large: bodies are stopped; small: rounding makes impacts.
 CONTRADICTING_RATE = 100.0
 # Of `speed_zero`: changes of rates by taken-back gaps that need no second look. Large: drift; small: slower.
@@ -220,6 +236,8 @@ MOST_LENIENT = 1e7
 
 # --- Impacts that follow each other ---
 
+# Of the largest impulse of an impact: less is rounding and no event. Large: hidden impacts; small: events by chance.
+NO_IMPULSE = 1e-12
 # Of the kinetic energy: more is no rounding. Large: energy comes from nowhere; small: restitution cut by rounding.
 ENERGY_GAIN = 1e-12
 # Times `gap_zero`: lower rebounds are rounding. Large: stops small rebounds; small: goes on by rounding alone.
@@ -279,3 +297,6 @@ TAKEN_BACK = 0.2
 YIELD = 1e-3
 # Of a step: rounding of time. Large: the last step is long; small: one of next to nothing is added.
 STEP_ROUNDING = 1e-9
+# Of the scale, for each of the tolerance: what the acceleration may do to the way between rows, and 32 times as much to the
+# acceleration itself. Large: rates between rows off; small: long tables.
+STRAY_PER_TOLERANCE = 32.0

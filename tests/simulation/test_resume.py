@@ -183,7 +183,7 @@ def test_a_state_without_what_came_later_goes_on() -> None:
     first = simulate(scene, 0.05).end_state
     assert first is not None
     older = dataclasses.replace(first, arrays={name: part for name, part in first.arrays.items() if name not in LATER})
-    assert len(older.arrays) == len(first.arrays) - len(LATER)
+    assert len(older.arrays) == len(first.arrays) - len(set(LATER) & set(first.arrays)) < len(first.arrays)
     assert_same(simulate(scene, 0.1, start=older), simulate(scene, 0.1, start=first))
 
 

@@ -40,7 +40,7 @@ from watchsim.scene.forces import Side, Torque
 from watchsim.scene.roles import oscillators
 from watchsim.scene.scene import Body, Scene
 from watchsim.scene.trains import Bond, Ride, Weighed, bonds, felt, rides, weigh
-from watchsim.tolerances import CLEARANCE, SPRING_AT_REST
+from watchsim.tolerances import CLEARANCE, SLOWEST_RATE, SPRING_AT_REST, UNIT_PHASE
 
 # What are the coordinates of a model, how heavy are they, and what acts on them besides contacts?
 
@@ -49,10 +49,14 @@ OVER = {"constant": CONSTANT, "angle": OVER_ANGLE, "time": OVER_TIME}
 
 @dataclass(frozen=True)
 class Forced:
-    """Coordinates, joints, line springs, force tables and their knots, in the model's order; the largest natural frequency."""
+    """Coordinates, joints, line springs, force tables and their knots, in the model's order; natural frequencies, 1/s."""
 
     parts: tuple[Records, Records, Records, Records, np.ndarray]
     fastest: float
+    slowest: float  # that counts, of what moves at all: never 0
+
+
+UNSPRUNG = 3.0  # by so much slower than their rate is what only forces move
 
 
 class _Targets:
@@ -112,9 +116,9 @@ class _Targets:
 
 
 def forced_coordinates(
-    scene: Scene, riding: tuple[Ride, ...], bound: tuple[Bond, ...], slices: dict[str, slice], size: float
+    scene: Scene, riding: tuple[Ride, ...], bound: tuple[Bond, ...], slices: dict[str, slice], size: float, u: np.ndarray
 ) -> Forced:
-    """Coordinates with their forces; joints; force tables and their knots.
+    """Coordinates with their forces; joints; force tables and their knots. `u`: velocities at the start.
 
     What acts on a geared body acts on the coordinate of the one it is geared to, with its ratio as lever arm.
     """
@@ -159,17 +163,19 @@ def forced_coordinates(
         row.linear = not bent and row.weight_x == 0.0 and row.weight_y == 0.0 and i not in tabled | jointed
     inverse = np.where(rows.driven != 0, 0.0, 1.0 / rows.mass)
     light = 1.0 / (inverse[joints.coordinate] + inverse[joints.on])
-    fastest = float(
-        np.sqrt(
-            np.max(
-                [*(rows.stiffness / rows.mass), stiffest, *(joints.stiffness / light), *(k / rows.mass[i] for i, k in held)],
-                initial=0.0,
-            )
-        )
+    swings = np.sqrt(
+        [*(rows.stiffness / rows.mass), stiffest, *(joints.stiffness / light), *(k / rows.mass[i] for i, k in held)]
     )
-    push = [*(np.abs(rows.force) / (rows.mass * rows.scale)), *(np.abs(joints.force) / light)]
-    rows.rate = fastest or float(np.sqrt(np.max(push, initial=0.0))) or 1.0
-    return Forced((rows, joints, lines, tables, knots), fastest)
+    fastest = float(np.max(swings, initial=0.0))
+    pull = np.abs(rows.force) + np.hypot(rows.weight_x, rows.weight_y)
+    for table in tables:
+        pull[table.coordinate] += np.max(np.abs(knots[table.start : table.start + table.count, 1]), initial=0.0)
+    push = np.sqrt([*(pull / (rows.mass * rows.scale)), *(np.abs(joints.force) / light)])
+    pushed, thrown = float(np.max(push, initial=0.0)), float(np.max(np.abs(u) / rows.scale, initial=0.0))
+    rows.rate = fastest or pushed or thrown or 1.0
+    # Without a spring nothing comes back by itself: what forces do takes longer than their rate says.
+    slowest = float(np.min(swings[swings > 0.0])) if fastest else pushed / UNSPRUNG or thrown or 1.0
+    return Forced((rows, joints, lines, tables, knots), fastest, max(slowest, SLOWEST_RATE * fastest))
 
 
 def _watch(scene: Scene, targets: _Targets) -> float:
@@ -260,6 +266,7 @@ class Compiled:
     q: np.ndarray
     u: np.ndarray
     fastest: float  # 1/s, largest natural frequency of a spring, 0 without springs
+    unit: float  # s, a power of ten: about ten radians of the slowest spring, else of what forces, else velocities do
     declared: tuple[int, ...] = ()  # pairs of primitives of each pair of bodies
     against: tuple[tuple[int, int, float], ...] = ()  # coordinates given relative to a carrier: (own, carrier's or -1, angle)
     geared: tuple[tuple[int, float, float], ...] = ()  # further columns: ratio times that coordinate plus shift
@@ -307,7 +314,7 @@ def _compiled(scene: Scene, prefilter: bool) -> Compiled:
     primitives, layers, owners, sides = _primitives(scene, riding, size)
     owners = tuple(named.get(owner, owner) for owner in owners)
     contacts, laws, pairs, counts = declared_contacts(scene, bodies, riding, sides, primitives, CLEARANCE * size)
-    forced = forced_coordinates(scene, riding, bound, slices, size)
+    forced = forced_coordinates(scene, riding, bound, slices, size, u)
     near = near_contacts(bodies, primitives, contacts, pairs)
     choose_cells(bodies, primitives, contacts, pairs, near)
     if not prefilter:
@@ -319,9 +326,9 @@ def _compiled(scene: Scene, prefilter: bool) -> Compiled:
     own = [(body.name, bond) for body, bond in zip(scene.bodies, bound, strict=True) if body.geared and body.name not in named]
     geared = tuple((int(bodies[bond.to].first), bond.given, bond.shift) for _, bond in own)
     slices |= {name: slice(len(q) + k, len(q) + k + 1) for k, (name, _) in enumerate(own)}
+    unit, against = 10.0 ** round(math.log10(UNIT_PHASE / forced.slowest)), _against(riding, bodies, bound)
     return Compiled(
-        *(model, layers, owners, slices, size, frozen(q), frozen(u), forced.fastest, counts),
-        *(_against(riding, bodies, bound), geared),
+        *(model, layers, owners, slices, size, frozen(q), frozen(u), forced.fastest, unit, counts, against, geared),
     )
 
 

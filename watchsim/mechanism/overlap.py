@@ -18,12 +18,13 @@ from numpy.typing import NDArray
 
 from watchsim.geometry.loops import Loop, chords, polyline
 from watchsim.geometry.primitives import TURN, Arc, Edge, Line, Point
+from watchsim.mechanism.compile import scene_size
 from watchsim.scene.errors import Fault
 from watchsim.scene.forces import Side
 from watchsim.scene.scene import Scene
 from watchsim.scene.toml import key_lines
 from watchsim.scene.trains import start_poses
-from watchsim.tolerances import DRAWING_ROUNDING
+from watchsim.tolerances import DRAWING_ROUNDING, LARGEST_DRAWN, SMALLEST_DRAWN
 
 # Which polygons stand for the material that some outlines bound?
 #
@@ -168,7 +169,8 @@ def face_depth(face: Floats, edges: tuple[Edge, ...], shape: Any, allowed: float
         return best, place
     points = shapely.get_coordinates(shape)
     for edge in edges:
-        if face_line(chord_points(Loop((edge,), closed=False), COARSE)).distance(shape) > 2.0 * COARSE:
+        coarse = max(COARSE, COARSE / LARGEST_DRAWN * edge.radius) if isinstance(edge, Arc) else COARSE
+        if face_line(chord_points(Loop((edge,), closed=False), coarse)).distance(shape) > 2.0 * coarse:
             continue
         beside, behind = _behind_arc(edge, points) if isinstance(edge, Arc) else _behind_line(edge, points)
         behind = np.where(beside, behind, -math.inf)
@@ -275,8 +277,14 @@ def faults_at(scene: Scene, found: Iterable[tuple[Overlap, str]]) -> list[Fault]
     return faults
 
 
+def _grain(scene: Scene) -> float:
+    """By how much coarser than usual a scene of its size is drawn, and looked at."""
+    size = scene_size(scene)
+    return size / min(max(size, SMALLEST_DRAWN), LARGEST_DRAWN)
+
+
 def _meetings(scene: Scene) -> Iterator[Overlap]:
-    poses = start_poses(scene)
+    poses, grain = start_poses(scene), _grain(scene)
     layers: dict[Side, _Layer] = {}
     for i, contact in enumerate(scene.contacts):
         sides = []
@@ -286,7 +294,7 @@ def _meetings(scene: Scene) -> Iterator[Overlap]:
             for own in (Side(body.name, name) for name in names):
                 if own not in layers:
                     loops = tuple(loop for loop in body.loops if loop.layer == own.layer and loop.edges)
-                    layers[own] = _Layer(own, loops, poses[body.name])
+                    layers[own] = _Layer(own, loops, poses[body.name], grain)
             sides.append([layers[Side(body.name, name)] for name in names])
         for a in sides[0]:
             for b in sides[1]:
@@ -299,16 +307,17 @@ LENS = 3  # points of an arc and its chord seen from afar: without area, and nea
 
 
 class _Layer:
-    """The outlines of one layer where they stand at the start: their chords, and open faces."""
+    """The outlines of one layer where they stand at the start: their chords, and open faces. `grain`: see `_grain`."""
 
-    def __init__(self, side: Side, loops: tuple[Loop, ...], pose: Pose) -> None:
-        self.side, self.loops, self.pose = side, loops, pose
-        self.points = [placed(chord_points(loop, COARSE), pose) for loop in loops]
+    def __init__(self, side: Side, loops: tuple[Loop, ...], pose: Pose, grain: float) -> None:
+        self.side, self.loops, self.pose, self.grain = side, loops, pose, grain
+        coarse = COARSE * grain
+        self.points = [placed(chord_points(loop, coarse), pose) for loop in loops]
         low = [np.minimum(points[1:], points[:-1]) for points in self.points]
         high = [np.maximum(points[1:], points[:-1]) for points in self.points]
         none = np.zeros((0, 2))
         # Boxes around the chords, wide enough for their arcs.
-        self.boxes = np.hstack([np.concatenate([none, *low]) - COARSE, np.concatenate([none, *high]) + COARSE])
+        self.boxes = np.hstack([np.concatenate([none, *low]) - coarse, np.concatenate([none, *high]) + coarse])
         ends = self.boxes[:, :2].min(axis=0, initial=math.inf), self.boxes[:, 2:].max(axis=0, initial=-math.inf)
         self.box: Floats = np.concatenate(ends)
 
@@ -320,7 +329,8 @@ class _Layer:
         for loop, coarse in zip(self.loops, self.points, strict=True):
             marked = near[at : at + len(coarse) - 1]
             at += len(coarse) - 1
-            points, error = refined_points(loop, COARSE, marked, DEVIATION) if marked.any() else (None, 0.0)
+            coarsely, fine = COARSE * self.grain, DEVIATION * self.grain
+            points, error = refined_points(loop, coarsely, marked, fine) if marked.any() else (None, 0.0)
             points, worst = coarse if points is None else placed(points, self.pose), max(worst, error)
             if loop.closed and len(points) > LENS:
                 rings.append((points, loop.hole))
@@ -333,12 +343,13 @@ def _meeting(contact: int, a: _Layer, b: _Layer) -> Overlap | None:
     """The deepest point at which two layers touch or overlap; None where they are apart."""
     import shapely
 
-    if not _meet(a.box[None], b.box[None] + DRAWING_ROUNDING * SIDES)[0]:  # of nothing at all it is empty
+    rounding = DRAWING_ROUNDING * a.grain
+    if not _meet(a.box[None], b.box[None] + rounding * SIDES)[0]:  # of nothing at all it is empty
         return None
     (region_a, faces_a, error_a), (region_b, faces_b, error_b) = (
         layer.finely(near) for layer, near in zip((a, b), _near(a, b), strict=True)
     )
-    allowed = DRAWING_ROUNDING + error_a + error_b
+    allowed = rounding + error_a + error_b
     found = [regions_depth(region_a, region_b, allowed)]
     for faces, region, others in ((faces_a, region_b, faces_b), (faces_b, region_a, faces_a)):
         for points, edges in faces:
@@ -360,8 +371,9 @@ def _near(a: _Layer, b: _Layer) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     import shapely
 
     marks = np.zeros(len(a.boxes), bool), np.zeros(len(b.boxes), bool)
-    wide = a.boxes + CLOSE * SIDES
-    inside_a, inside_b = np.flatnonzero(_meet(wide, b.box[None])), np.flatnonzero(_meet(b.boxes, a.box[None] + CLOSE * SIDES))
+    margin = CLOSE * a.grain * SIDES
+    wide = a.boxes + margin
+    inside_a, inside_b = np.flatnonzero(_meet(wide, b.box[None])), np.flatnonzero(_meet(b.boxes, a.box[None] + margin))
     if len(inside_a) and len(inside_b):
         tree = shapely.STRtree(shapely.box(*wide[inside_a].T))
         found_b, found_a = tree.query(shapely.box(*b.boxes[inside_b].T))

@@ -18,7 +18,16 @@ from watchsim.dynamics.redundant import keep_independent, solve_small, unit_scal
 from watchsim.jit import hot_kernel, kernel
 from watchsim.model import FREE, OVER_TIME, REPEATED
 from watchsim.simulation.scratch import MONITORS
-from watchsim.tolerances import DEPENDENT_IN_STEPS, PAINLEVE, PAINLEVE_WATCHED, SLIP_SLACK, SLIP_WEIGHT, TAKEN_BACK_ALONG
+from watchsim.tolerances import (
+    DEPENDENT_IN_STEPS,
+    LOOSE,
+    PAINLEVE,
+    PAINLEVE_WATCHED,
+    SLEEP_LOOSE,
+    SLIP_SLACK,
+    SLIP_WEIGHT,
+    TAKEN_BACK_ALONG,
+)
 
 # Which closed contacts and coordinates act on each other?
 #
@@ -276,11 +285,39 @@ def _share_terms(model, out_terms):
 
 
 @kernel
-def _is_still(coordinate, u, a, options, terms):
-    """It has no velocity and no acceleration beyond rounding; `terms` is the sum of the forces on it without sign."""
+def _is_still(coordinate, u, a, sleep, options, terms):
+    """It has no velocity and no acceleration beyond rounding, the share `sleep` of the sum of forces on it without sign."""
     if abs(u) * options.size > options.speed_zero * coordinate.scale:
         return False
-    return abs(a) * coordinate.mass <= options.sleep * terms
+    return abs(a) * coordinate.mass <= sleep * terms
+
+
+@kernel
+def mark_loose(model, closed, m, mode, label, a, out_loose):
+    """Mark an island, by its m contacts in force, loose where these allow its accelerations `a`.
+
+    Rounding of contact forces moves bodies in the directions that they resist. A body beside an unstable rest moves along them.
+    """
+    loose = 1
+    for i in range(m):
+        across, along, most = 0.0, 0.0, 0.0
+        easy_N, easy_T = 0.0, 0.0
+        for k in range(closed.slots[i]):
+            j = closed.coord[i, k]
+            mass = model.coordinates[j].mass
+            across += closed.w_N[i, k] * a[j]
+            along += closed.w_T[i, k] * a[j]
+            easy_N += closed.w_N[i, k] ** 2 / mass
+            easy_T += closed.w_T[i, k] ** 2 / mass
+            most += mass * a[j] * a[j]
+        if abs(across) > LOOSE * math.sqrt(easy_N * most):
+            loose = 0
+        if mode[closed.ids[i]] == STICK and abs(along) > LOOSE * math.sqrt(easy_T * most):
+            loose = 0
+    island = label[closed.coord[0, 0]]
+    for j in range(len(label)):
+        if label[j] == island:
+            out_loose[j] = loose
 
 
 @kernel
@@ -326,7 +363,8 @@ def find_sleepers(model, regime, options, time, event, f, out_u, out_a):
         if regime.grip[i] == STICK:
             touched[label[i]] = 1
     for i in range(n):
-        if touched[label[i]] == 0 or not _is_still(model.coordinates[i], out_u[i], out_a[i], options, event.terms[i]):
+        sleep, coordinate = SLEEP_LOOSE * options.sleep if event.loose[i] else options.sleep, model.coordinates[i]
+        if touched[label[i]] == 0 or not _is_still(coordinate, out_u[i], out_a[i], sleep, options, event.terms[i]):
             _wake(label, label[i], regime.awake)
     for j in range(len(model.tables)):
         if _will_change(model, model.tables[j], time):

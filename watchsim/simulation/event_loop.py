@@ -31,6 +31,7 @@ from watchsim.simulation.coupled_motion import (
     find_sleepers,
     island_of,
     label_islands,
+    mark_loose,
     place_contacts,
     project_positions,
     project_velocities,
@@ -241,6 +242,7 @@ def finish_event(model, state, f, options, scratch, record):
     fill_inverse(model, state.regime.grip, system.inverse)
     accelerate(model, rest, 0, system, state.a)
     begin_terms(system.h, event.terms)
+    event.loose[:] = 0
     first = 0
     while first < f:
         m = place_contacts(model, state.regime.active, first, state.regime.upto[first], event.pose, rest)
@@ -252,6 +254,8 @@ def finish_event(model, state, f, options, scratch, record):
         apply(rest, m, system.force, system.inverse, state.a)
         hold_at_dead_centre(model, state.regime.mode, state.u, m, system, rest, state.a)
         add_terms(rest, m, system.force, event.terms)
+        if m > 0:
+            mark_loose(model, rest, m, state.regime.mode, event.label, state.a, event.loose)
     f = _closed_of(state.regime.mode, f, state.regime.active, state.regime.active)
     find_sleepers(model, state.regime, options, state.clock.time, event, f, state.u, state.a)
     _list_awake_first(model, state.regime, f, event, state.instant)
@@ -344,7 +348,7 @@ def _smooth_step(model, cells, state, options, end_time, scratch, record):
             state.clock.time = step.span.start + end
         keep_inner_rows(model, options, end, scratch.step, record)
         keep_row(record, state.clock.time, state.q, state.u, state.a)
-    keep_passages(model, state, step, end, record)
+    keep_passages(model, state, options, step, end, record)
     state.instant.touched = contact
     event = contact >= 0 or leave <= length
     if event:
@@ -406,7 +410,7 @@ def handle_waiting_event(model, cells, state, options, scratch, record):
         return Stop.TOO_MANY_EVENTS
     state.instant.events += 1
     state.counts.instants += 1
-    keep_passages(model, state, scratch.step, 0.0, record)
+    keep_passages(model, state, options, scratch.step, 0.0, record)
     keep_row(record, state.clock.time, state.q, state.u, state.a)
     return Stop.RUNNING
 

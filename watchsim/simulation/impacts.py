@@ -25,6 +25,7 @@ from watchsim.tolerances import (
     ENDLESS_REBOUNDS,
     ENERGY_GAIN,
     HIDDEN_REBOUND,
+    NO_IMPULSE,
     REBOUND_ROUNDING,
     SAME_RATE,
     SHRUNK_PLAY,
@@ -106,9 +107,12 @@ def _write(model, state, m, jam_speed, closed, room, record, ended, ends):
     contact_velocities(closed, m, room.before, room.rates_before)
     contact_velocities(closed, m, state.u, room.rates)
     state.sums.drive += drive_through_contacts(model, closed, m, room.impulse, state.u)
+    largest = 0.0
+    for i in range(m):
+        largest = max(largest, room.impulse[2 * i])
     for i in range(m):
         N, T, k = 2 * i, 2 * i + 1, closed.ids[i]
-        if room.impulse[N] <= 0.0:
+        if room.impulse[N] <= NO_IMPULSE * largest:
             continue
         lost = -0.5 * room.impulse[N] * (room.rates_before[N] + room.rates[N])
         lost -= 0.5 * room.impulse[T] * (room.rates_before[T] + room.rates[T])

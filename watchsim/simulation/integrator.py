@@ -45,6 +45,8 @@ from watchsim.tolerances import (
     RATES_TURNED,
     ROOT_RESOLUTION,
     SLIP_SLACK,
+    SLOW,
+    SLOW_ERROR,
     SMALLEST_STEP,
     WITHIN_ENDS,
 )
@@ -306,7 +308,19 @@ def _stage(model, regime, options, s, h, smooth, out_counts):
 
 
 @kernel
-def _error(model, options, h, step):
+def _tolerance(model, options, step):
+    """The relative error of this step: less where all is slow, since what leaves an unstable rest multiplies its errors."""
+    n, fastest = len(model.coordinates), 0.0
+    for i in range(n):
+        coordinate = model.coordinates[i]
+        fastest = max(fastest, max(abs(step.y0[n + i]), abs(step.y1[n + i])) / (coordinate.scale * coordinate.rate))
+    if fastest >= SLOW:
+        return options.tolerance
+    return min(options.tolerance, max(options.tolerance * fastest / SLOW, SLOW_ERROR))
+
+
+@kernel
+def _error(model, tolerance, h, step):
     """Estimated error of the step over the tolerance; above 1 it must be repeated."""
     n = len(model.coordinates)
     five, three = 0.0, 0.0
@@ -323,7 +337,7 @@ def _error(model, options, h, step):
         three += (e3 / scale) ** 2
     if five == 0.0:
         return 0.0
-    return abs(h) * five / math.sqrt((five + 0.01 * three) * 2 * n) / options.tolerance
+    return abs(h) * five / math.sqrt((five + 0.01 * three) * 2 * n) / tolerance
 
 
 @kernel
@@ -347,7 +361,7 @@ def _extend(model, regime, options, h, smooth, out_counts):
 
 
 @kernel
-def _defect(model, options, h, step):
+def _defect(model, tolerance, h, step):
     """How far the slope of the extended places is from the extended velocities, over what it may be; above 1: to be repeated.
 
     Neither is exact, and the error of both has the order of h^8. Times the step, so that it compares with a place.
@@ -357,7 +371,7 @@ def _defect(model, options, h, step):
     for i in range(n):
         slope = dense(step, i, PROBE * h)[1]
         worst = max(worst, abs(slope - dense_value(step, n + i, PROBE * h)) / model.coordinates[i].scale)
-    return abs(h) * worst / (DEFECT * options.tolerance)
+    return abs(h) * worst / (DEFECT * tolerance)
 
 
 @kernel
@@ -386,11 +400,12 @@ def coupled_step(model, state, options, longest, smooth):
             smallest = min(smallest, _stage(model, regime, options, s, h, smooth, state.counts))
         for i in range(len(step.y0)):
             step.y1[i] = smooth.y[i]
-        error = _error(model, options, h, step)
+        tolerance = _tolerance(model, options, step)
+        error = _error(model, tolerance, h, step)
         if error <= 1.0:
             step.span.length = h
             smallest = min(smallest, _extend(model, regime, options, h, smooth, state.counts))
-            defect = _defect(model, options, h, step)
+            defect = _defect(model, tolerance, h, step)
             error = defect if defect > 1.0 else error
         factor = min(GROW, max(SHRINK, SAFETY * error**-0.125)) if error > 0.0 else GROW
         if error <= 1.0:

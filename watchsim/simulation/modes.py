@@ -159,7 +159,7 @@ def rate_rounding(closed, i, options, peak_speed):
     for k in range(closed.slots[i]):
         terms += abs(closed.w_N[i, k]) * peak_speed[closed.coord[i, k]]
         across += abs(closed.w_T[i, k]) * peak_speed[closed.coord[i, k]]
-    return RATE_ROUNDING * terms + TILT_ROUNDING * across + RATE_FLOOR * options.size
+    return RATE_ROUNDING * terms + TILT_ROUNDING * across + RATE_FLOOR * options.accumulation_speed
 
 
 @kernel

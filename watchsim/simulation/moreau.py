@@ -63,8 +63,8 @@ from watchsim.simulation.scratch import (
     state_by_reference,
 )
 from watchsim.simulation.state import EventKind, Stop, room_for
-from watchsim.simulation.step_path import sign
-from watchsim.tolerances import STEP_ROUNDING, TAKEN_BACK, YIELD
+from watchsim.simulation.step_path import sign, turning_side
+from watchsim.tolerances import STEP_ROUNDING, STRAY_PER_TOLERANCE, TAKEN_BACK, YIELD
 
 # What does Moreau's time stepping keep from step to step, and where does it work?
 
@@ -77,12 +77,13 @@ class KeptSteps:
 
     depth: float  # deepest penetration of the last step, m
     row_time: float  # when the last row was written, s
+    since_row: float  # steps made since then
     violation: float  # worst residual of the laws so far
     sweeps: int  # of relaxation so far
 
 
 class MoreauWork(NamedTuple):
-    """Room to work in; `memory` (percussions of the last step by contact) and `kept` belong to the state.
+    """Room to work in; `memory` (percussions of the last step by contact), `kept`, `row_a` and `row_jerk` belong to the state.
 
     Rows of `rates` and `more` are those of `laws`: N, T of each of the m closed contacts, then the bearings.
     """
@@ -98,6 +99,10 @@ class MoreauWork(NamedTuple):
     free: Array  # with the forces, without contacts
     foreseen: Array  # velocities at the middle as the last step foresees them
     start: Array  # coordinates at the start of the step
+    before: Array  # velocities there, before impacts
+    bend: Array  # accelerations of the step before
+    row_a: Array  # accelerations at the last row
+    row_jerk: Array  # and how fast they changed there, per s
     wound: Array  # by coordinate: twice the energy of its spring before positions are taken back
     force: Array  # drives and gravity at the middle
     damping: Array
@@ -124,6 +129,7 @@ def moreau_work(model: Model) -> MoreauWork:
         name: np.zeros(n)
         for name in ("q", "u", "free", "force", "damping", "line", "mass", "inverse", "change", "foreseen", "start", "wound")
     }
+    vectors |= {name: np.zeros(n) for name in ("before", "bend", "row_a", "row_jerk")}
     by_row = {name: np.zeros(rows) for name in ("rates", "more")}
     return MoreauWork(
         memory=np.zeros((len(model.contacts), 2)),
@@ -349,7 +355,7 @@ def _take_back(state, options, m, work):
     push(work, m, 0, laws.P, state.q)
 
 
-ROWS_PER_STEP, EVENTS_PER_CONTACT = 3, 2
+ROWS_PER_STEP, EVENTS_PER_CONTACT = 4, 2
 
 
 class Pace:
@@ -360,27 +366,27 @@ class Pace:
 
 
 @kernel
-def _passages(model, state, h, work, q, u, record):
+def _passages(model, state, options, h, work, q, u, record):
     """Turning points and rest passages of sprung bodies within the step that ends at (q, u): the step is a parabola."""
     for i in range(len(u)):
         coordinate = model.coordinates[i]
         if coordinate.watched == 1:
-            _keep_of(model, state, h, (i, -1, coordinate.level), (state.q, work.u, q, u), record)
+            _keep_of(model, state, options, h, (i, -1, coordinate.level), (state.q, work.u, q, u), record)
     for j in range(len(model.joints)):
         joint = model.joints[j]
         if joint.watched == 1:
-            _keep_of(model, state, h, (joint.coordinate, joint.on, joint.rest), (state.q, work.u, q, u), record)
+            _keep_of(model, state, options, h, (joint.coordinate, joint.on, joint.rest), (state.q, work.u, q, u), record)
 
 
 @kernel
-def _keep_of(model, state, h, spring, ends, record):
+def _keep_of(model, state, options, h, spring, ends, record):
     """The same for one spring, (coordinate, coordinate of the carrier or -1, rest); `ends`: q and u before and after."""
     start = state.clock.time
     i, on, rest = spring
     body = model.coordinates[i].body
     before, fast, after, last = along(ends[0], i, on), along(ends[1], i, on), along(ends[2], i, on), along(ends[3], i, on)
     bend = (last - fast) / h
-    side = sign(last)
+    side = turning_side(last, model.coordinates[i], options)
     if side != 0 and side != state.side_u[i]:
         if state.side_u[i] != 0:
             tau = h * fast / (fast - last) if fast * last < 0.0 else 0.0
@@ -400,16 +406,54 @@ def _keep_of(model, state, h, spring, ends, record):
     state.clock.time = start
 
 
+# Between rows the motion is a polynomial through q, u and a at both (`Trajectory.sample`). What it misses is the way that the
+# acceleration strays from a straight line: where that is more than the tolerance, as at impacts, at reversals of slips and
+# where contacts close or open, a row stands at the start of the step in which it happens, before it and after it.
+
+
 @kernel
-def _step(model, cells, state, options, h, whole, work, record):
-    """One step of length h, of which `whole` is the usual one; returns a Stop code."""
+def _strays(model, state, options, h, work):
+    """True if rows further apart than to the start of this step, which is done, would miss part of the way."""
+    kept, stray = work.kept, 0.0
+    apart = state.clock.time - kept.row_time + h
+    for i in range(len(state.a)):
+        if kept.since_row == 1.0:
+            work.row_jerk[i] = (state.a[i] - work.row_a[i]) / h
+        off = state.a[i] - work.row_a[i] - work.row_jerk[i] * (kept.since_row * h)
+        stray = max(stray, abs(off) / model.coordinates[i].scale)
+    return stray * apart * apart > STRAY_PER_TOLERANCE * options.tolerance
+
+
+@kernel
+def _keep_rows(model, state, options, jump, h, longest, work, record):
+    """Rows at the start of the step just made, `longest` seconds after the last one at the latest.
+
+    `state.q` is that at the start, `state.a` the acceleration in the step. `jump`: there were impacts.
+    """
+    kept, time = work.kept, state.clock.time
+    first = state.counts.steps == 0
+    kinked = jump or first or _strays(model, state, options, h, work)
+    if kinked or time - kept.row_time >= longest * (1.0 - STEP_ROUNDING):
+        if jump or not first:
+            keep_row(record, time, state.q, work.before, work.bend)
+        if kinked:
+            keep_row(record, time, state.q, work.u, state.a)
+        for i in range(len(state.a)):
+            work.row_a[i] = state.a[i] if kinked else work.bend[i]
+            work.row_jerk[i] = 0.0 if kinked else (state.a[i] - work.bend[i]) / h
+        kept.row_time, kept.since_row = time, 0.0 if kinked else 1.0
+    kept.since_row += 1.0
+
+
+@kernel
+def _step(model, cells, state, options, h, pace, work, record):
+    """One step of length h, of which `pace.step` is the usual one; returns a Stop code."""
     code, m = closed_at_middle(model, cells, state, options, h, work)
     if code != Stop.RUNNING:
         return code
+    copy(state.u, work.before)
+    copy(state.a, work.bend)
     jump = stop_approaches(model, state, options, m, work, record)
-    if jump:
-        keep_row(record, state.clock.time, state.q, state.u, state.a)
-        keep_row(record, state.clock.time, state.q, work.u, state.a)
     act(model, state, m, h, work, state.u)
     copy(state.q, work.start)
     move(model, state, options, m, h, work, state.u)
@@ -418,10 +462,11 @@ def _step(model, cells, state, options, h, whole, work, record):
             return Stop.NOT_FINITE
         # `_passages` looks from the start of the step to its end.
         work.q[i], state.q[i] = state.q[i], work.start[i]
-    _passages(model, state, h, work, work.q, state.u, record)
+    _passages(model, state, options, h, work, work.q, state.u, record)
+    _keep_rows(model, state, options, jump, h, pace.row, work, record)
     copy(work.q, state.q)
     state.counts.steps += 1
-    state.clock.time = state.counts.steps * whole if h == whole else state.clock.time + h
+    state.clock.time = state.counts.steps * h if h == pace.step else state.clock.time + h
     return Stop.RUNNING
 
 
@@ -454,7 +499,6 @@ def _loop(model, cells, state, options, until, pace, work, record):
             return Stop.BUFFER_FULL
         if state.instant.event_waits == 1:
             state.instant.event_waits = 0
-            keep_row(record, 0.0, state.q, state.u, state.a)
         left = until.end - state.clock.time
         if left <= 0.0:
             return Stop.DURATION
@@ -464,12 +508,9 @@ def _loop(model, cells, state, options, until, pace, work, record):
         if last and until.may_cut == 0:
             return Stop.LAST_STEP
         h = pace.step if left >= pace.step * (1.0 - STEP_ROUNDING) else left
-        code = _step(model, cells, state, options, h, pace.step, work, record)
+        code = _step(model, cells, state, options, h, pace, work, record)
         if code != Stop.RUNNING:
             return code
         if last:
             state.clock.time = until.end
-        # Rows at least so often; the last one always.
-        if last or state.clock.time - work.kept.row_time >= pace.row * (1.0 - STEP_ROUNDING):
-            work.kept.row_time = state.clock.time
-            keep_row(record, state.clock.time, state.q, state.u, state.a)
+            keep_row(record, until.end, state.q, state.u, state.a)

@@ -1,6 +1,6 @@
 """Which tolerances decide, and in which units?
 
-All lengths scale with the scene's size, so that a tower clock and a wristwatch are treated alike.
+All lengths scale with the scene's size, all times with its own unit, so that a tower clock and a wristwatch are treated alike.
 """
 
 from __future__ import annotations
@@ -29,6 +29,7 @@ from watchsim.tolerances import (
 
 if TYPE_CHECKING:
     from watchsim.mechanism.compile import Compiled
+    from watchsim.scene.scene import Scene
 
 
 class Options(NamedTuple):
@@ -54,8 +55,8 @@ class Options(NamedTuple):
 OptionsRef = by_reference(Options, __name__)
 
 
-def options_for(size: float, tolerance: float, longest: float, natural: float = math.inf) -> Options:
-    """Options for a scene whose contact outlines are `size` metres across; the two longest steps in seconds."""
+def options_for(size: float, tolerance: float, longest: float, natural: float = math.inf, unit: float = 1.0) -> Options:
+    """Options for a scene whose outlines are `size` metres across; the two longest steps and its unit of time in seconds."""
     return Options(
         tolerance=tolerance,
         gap_zero=GAP_ZERO * size,
@@ -66,10 +67,10 @@ def options_for(size: float, tolerance: float, longest: float, natural: float = 
         sunk=BEHIND_MOST * size,
         extent=EXTENT_PER_JOINT * JOINT_RESOLUTION * size,
         # Velocities drift off their contacts by about the tolerance within a step.
-        speed_zero=max(SPEED_ZERO, SPEED_PER_TOLERANCE * tolerance) * size,
+        speed_zero=max(SPEED_ZERO, SPEED_PER_TOLERANCE * tolerance) * size / unit,
         force_zero=FORCE_ZERO,
-        accumulation_time=ACCUMULATION_TIME,
-        accumulation_speed=ACCUMULATION_SPEED * size,
+        accumulation_time=ACCUMULATION_TIME * unit,
+        accumulation_speed=ACCUMULATION_SPEED * size / unit,
         sleep=SLEEP,
         # Rates between rows are off by the 5th power of their spacing: here by less than the tolerance.
         row_phase=min(max(FINEST_ROWS, 0.1 * (tolerance / 1e-9) ** 0.2), COARSEST_ROWS),
@@ -77,6 +78,11 @@ def options_for(size: float, tolerance: float, longest: float, natural: float = 
         natural=natural,
         size=size,
     )
+
+
+def options_of(scene: Scene, compiled: Compiled, tolerance: float) -> Options:
+    """Options for a run of this scene."""
+    return options_for(compiled.size, tolerance, scene.duration, natural_step(compiled), compiled.unit)
 
 
 def natural_step(compiled: Compiled) -> float:

@@ -30,7 +30,7 @@ from watchsim.scene.scene import Recording, Scene
 from watchsim.simulation import EVENT_DRIVEN
 from watchsim.simulation.event_loop import EVENTS_PER_CONTACT, ROWS_PER_STEP, advance
 from watchsim.simulation.foregone import Foregone
-from watchsim.simulation.options import Options, natural_step, options_for
+from watchsim.simulation.options import Options, options_of
 from watchsim.simulation.overlap_watch import OverlapWatch
 from watchsim.simulation.overlap_watch import warm_up as warm_up_watch
 from watchsim.simulation.recording import Recorder, Tally, columns_of, pairs_of, tail_length
@@ -216,7 +216,7 @@ class Run:
     def __init__(self, scene: Scene, compiled: Compiled, tolerance: float, recording: Recording) -> None:
         model = compiled.model
         self.scene, self.compiled, self.tolerance = scene, compiled, tolerance
-        self.options: Options = options_for(compiled.size, tolerance, scene.duration, natural_step(compiled))
+        self.options: Options = options_of(scene, compiled, tolerance)
         self.state: State = new_state(model, compiled.q, compiled.u)
         self.state.clock.step = FIRST_STEP * self.options.max_step
         self.finder = CellFinder(model)

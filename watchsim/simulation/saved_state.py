@@ -19,7 +19,7 @@ from watchsim.mechanism.compile import Compiled
 
 TALLIED = ("kinds", "beats", "moments", "last", "carried")
 TALLIED_LATER = ("late",)  # not in states of earlier versions: they begin blank
-LATER = ("returning", "returned")  # the same of the state itself
+LATER = ("returning", "returned", "row_a", "row_jerk", "since_row")  # the same of the state itself
 REQUESTED = ("method", "step", "tolerance")
 
 

@@ -55,8 +55,8 @@ class MoreauRun(Run):
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         kept = row_of(self.work.kept)
-        own = {name: kept[name] for name in ("depth", "sweeps", "row_time")}
-        return {**super().arrays(), "memory": self.work.memory, **own}
+        own = {name: kept[name] for name in ("depth", "sweeps", "row_time", "since_row")}
+        return {**super().arrays(), **{name: getattr(self.work, name) for name in ("memory", "row_a", "row_jerk")}, **own}
 
     def worst_residual(self) -> NDArray[np.float64]:
         return cast(NDArray[np.float64], row_of(self.work.kept)["violation"])

@@ -20,7 +20,7 @@ from watchsim.mechanism.overlap import Overlap, faults_at, meetings, overlap_fau
 from watchsim.model import NO_KEY, Model, frozen
 from watchsim.scene.errors import SceneError
 from watchsim.scene.scene import Scene
-from watchsim.simulation.options import Options, options_for
+from watchsim.simulation.options import Options, options_of
 from watchsim.tolerances import FURTHEST_TAKEN_BACK, IMMOBILE, NO_CHANGE_LEFT, OVERLAP_GONE, TOUCH_REACH
 
 # By which smallest change of the coordinates is an overlap taken back?
@@ -141,7 +141,12 @@ def refusals(scene: Scene, compiled: Compiled) -> list[tuple[Overlap, str]]:
     """What touches at the start in a way that no run can begin with, each with a sentence; overlaps beyond rounding apart."""
     if overlaps(scene):
         return []
-    return _clear(scene, compiled, CellFinder(compiled.model), options_for(compiled.size, scene.tolerance, scene.duration))[2]
+    return _clear(
+        scene,
+        compiled,
+        CellFinder(compiled.model),
+        options_of(scene, compiled, scene.tolerance),
+    )[2]
 
 
 def _clear(

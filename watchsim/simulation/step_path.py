@@ -403,7 +403,13 @@ def sign(x):
 
 
 @kernel
-def keep_passages(model, state, step, end, record):
+def turning_side(u, coordinate, options):
+    """The sign of a velocity; 0 where it counts as none: what rests does not turn."""
+    return sign(u) if abs(u) * options.size > options.speed_zero * coordinate.scale else 0
+
+
+@kernel
+def keep_passages(model, state, options, step, end, record):
     """Write down the turning points and rest passages of sprung bodies in the step's first `end` seconds.
 
     The state's q and u are those at the end; `end` 0 means a jump of velocity at one instant.
@@ -419,7 +425,7 @@ def keep_passages(model, state, step, end, record):
             if joint.watched == 0:
                 continue
             i, on, rest = joint.coordinate, joint.on, joint.rest
-        side = sign(along(state.u, i, on))
+        side = turning_side(along(state.u, i, on), model.coordinates[i], options)
         if side != 0 and side != state.side_u[i]:
             if state.side_u[i] != 0:
                 tau = _root(model, step, (i, on, rest), True, end) if end > 0.0 else 0.0

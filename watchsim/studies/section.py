@@ -25,7 +25,7 @@ from watchsim.scene.scene import Scene
 from watchsim.scene.teeth import train, turns_of_a_round
 from watchsim.scene.trains import bonds, rides
 from watchsim.simulation.event_loop import EVENTS_PER_CONTACT, ROWS_PER_STEP, advance
-from watchsim.simulation.options import Options, natural_step, options_for
+from watchsim.simulation.options import Options, options_of
 from watchsim.simulation.scratch import Until, new_record, new_scratch, new_until
 from watchsim.simulation.start import clear_start, directions, kinematics_at, overlapping_rows, taken_back_from
 from watchsim.simulation.start import warm_up as warm_up_start
@@ -162,7 +162,7 @@ class Loop:
         self.scene, self.tolerance = scene, tolerance
         self.compiled: Compiled = like.compiled if like else compile_scene(scene)
         model = self.compiled.model
-        self.options = options_for(self.compiled.size, tolerance, scene.duration, natural_step(self.compiled))
+        self.options = options_of(scene, self.compiled, tolerance)
         self.finder: CellFinder = like.finder if like else CellFinder(model)
         self._scratch = new_scratch(model)
         self._record = new_record(model, ROWS_PER_STEP + 64, EVENTS + EVENTS_PER_CONTACT * room_for(model), NO_ROWS)
