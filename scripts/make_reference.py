@@ -59,6 +59,8 @@ PAGES = {
         [
             "steady",
             "Cycle",
+            "compare",
+            "watchsim.studies.compare:Comparison",
             "sweep",
             "watchsim.studies.sweep:Sweep",
             "sensitivity",

@@ -26,7 +26,11 @@ class CommandParser(argparse.ArgumentParser):
         found, unknown = super().parse_known_args(words, namespace)
         for word in unknown:
             self._check(word)
-            self.error(f'"{word}" is one word too many. A text with blanks stands in quotes.')
+        several = next((action for action in self._actions if not action.option_strings and action.nargs in ("*", "+")), None)
+        if several is not None:  # argparse takes those before the first option only
+            setattr(found, several.dest, [*(getattr(found, several.dest) or ()), *unknown])
+        elif unknown:
+            self.error(f'unexpected argument "{unknown[0]}". Put quotes around a value that contains spaces.')
         return found, []
 
     def _check(self, word: str) -> None:

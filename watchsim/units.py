@@ -87,6 +87,7 @@ _PREFIXABLE: dict[str, Unit] = {
     "g": Unit(Fraction(1, 1000), 0, (0, 1, 0, 0)),
     "s": Unit(Fraction(1), 0, (0, 0, 1, 0)),
     "N": Unit(Fraction(1), 0, (1, 1, -2, 0)),
+    "Nm": Unit(Fraction(1), 0, (2, 1, -2, 0)),
     "J": Unit(Fraction(1), 0, (2, 1, -2, 0)),
     "Pa": Unit(Fraction(1), 0, (-1, 1, -2, 0)),
     "Hz": Unit(Fraction(1), 0, (0, 0, -1, 0)),
@@ -110,7 +111,7 @@ PLAIN = "here a plain number is needed, without a unit"
 DIGITS = 1000  # of a number as text
 LONGEST = 200  # characters of a unit: "mg·cm²" has 6, and brackets cannot be nested without end
 _ALIASES = {"deg": "°", "degree": "°", "degrees": "°", "in": "inch", "day": "d", "bph": "vph", "turn": "rev", "sec": "s"}
-_SPELLINGS = {"μ": "µ", "−": "-", "**": "^", "⋅": "·", "*": "·", ".": "·", "\u00a0": " ", "\u202f": " "}
+_SPELLINGS = {"μ": "µ", "−": "-", "**": "^", "⋅": "·", "*": "·", ".": "·", "\u00a0": " ", "\u202f": " ", "A/h": "vph"}
 _SUPERSCRIPTS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
 _QUANTITY = re.compile(r"\s*([+\-−]?(?:\d+\.?\d*|\.\d+)(?:[eE][+\-−]?\d+)?)[\s\u00a0\u202f]*(.*?)\s*", re.DOTALL)
 _TOKEN = re.compile(r"\s*(?:(?P<name>[A-Za-zµ°%]+)|(?P<open>\()|(?P<close>\))|(?P<divide>/)|(?P<times>·))\s*")

@@ -115,9 +115,11 @@ def test_windows_of_any_kind_cost_no_run(capsys, tmp_path) -> None:
     assert main([*run, "--record", "5 s:6 s", "-o", str(tmp_path / "late")]) == BAD_INPUT
     assert "the run ends at 0.5 s" in capsys.readouterr().err
     assert not (tmp_path / "late").exists()
-    assert main([*run, "--set", 'run.record=["5 s", "6 s"]', "-o", str(tmp_path / "none")]) == FINE
-    assert "the run ends at 0.5 s" in capsys.readouterr().err
-    assert json.loads((tmp_path / "none" / "summary.json").read_text(encoding="utf-8"))["impacts"] > 0
+    assert main([*run, "--set", 'run.record=["5.8 s", "6 s"]', "--report", "-o", str(tmp_path / "moved")]) == FINE
+    assert "recorded is 0.3 s to 0.5 s instead" in capsys.readouterr().err
+    assert "0.5 s simulated; " in (tmp_path / "moved" / "report.html").read_text(encoding="utf-8")
+    moved = read_results(tmp_path / "moved")
+    assert moved.t[0] <= 0.3 < moved.t[2] and moved.t[-1] == 0.5
 
 
 def test_a_plot_that_fails_costs_a_line_only(capsys, tmp_path, monkeypatch) -> None:

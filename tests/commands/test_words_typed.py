@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from watchsim.cli import COMMANDS, CommandParser, main
+from watchsim.paths import profiles_dir
 
 ANSWERS = [  # what was typed, whose usage is shown, what is said
     ("run --foo", "run", "there is no option --foo."),
@@ -18,7 +19,7 @@ ANSWERS = [  # what was typed, whose usage is shown, what is said
     ("check -json", "check", "there is no option -json. Did you mean --json?"),
     ("check -q", "check", "there is no option -q."),
     ("new --lst", "new", "there is no option --lst. Did you mean --list?"),
-    ("plot here there", "plot", '"there" is one word too many. A text with blanks stands in quotes.'),
+    ("plot here there", "plot", 'unexpected argument "there". Put quotes around a value that contains spaces.'),
     ("rnu here", "", 'there is no command "rnu". Did you mean run?'),
     ("scene.toml", "", f'there is no command "scene.toml". Commands: {", ".join(COMMANDS)}.'),
 ]
@@ -53,6 +54,19 @@ def test_a_negative_quantity_is_the_value_of_its_option(value: str) -> None:
     parser.add_argument("--duration")
     parser.add_argument("place")
     assert vars(parser.parse_args(["--duration", value, "here"])) == {"duration": value, "place": "here"}
+
+
+def test_keys_are_taken_before_and_after_options() -> None:
+    parser = CommandParser()
+    importlib.import_module("watchsim.commands.sweep").options(parser)
+    found = parser.parse_args(["scene", "a=1,2", "-o", "here", "b=3,4", "--json", "c=5 µN·m"])
+    assert (found.scene, found.keys, found.output, found.json) == ("scene", ["a=1,2", "b=3,4", "c=5 µN·m"], "here", True)
+
+
+def test_a_sweep_speaks_in_the_unit_that_was_typed(capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["sweep", str(profiles_dir() / "swiss_lever"), "--no-plots", "bodies.balance.inertia=-10:20:3 g·mm²"]
+    assert main(words) == 2
+    assert '"-10 g·mm²"' in capsys.readouterr().err
 
 
 def test_a_folder_with_a_scene_is_told_from_results(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -87,6 +87,7 @@ WORTH: dict[Dimension, dict[str, float | None]] = {
         "J": 1.0,
         "µJ": 1e-6,
         "uN m": 1e-6,
+        "µNm": 1e-6,
     },
     units.FORCE: {"N": 1.0, "mN": 1e-3, "kN": 1e3, "gf": 0.00980665, "mgf": None, "g·m/s²": 1e-3},
     units.FREQUENCY: {
@@ -95,6 +96,7 @@ WORTH: dict[Dimension, dict[str, float | None]] = {
         "MHz": 1e6,
         "vph": 0.0001388888888888889,
         "bph": 0.0001388888888888889,
+        "A/h": 0.0001388888888888889,
         "1/s": None,
     },
     units.ROTARY_STIFFNESS: {"N·m/rad": 1.0, "mN·m/rad": 1e-3, "µN·m/rad": 1e-6, "µN·m/°": 5.729577951308232e-05},
@@ -139,7 +141,7 @@ def test_what_measures_something_else_is_refused(kind: Dimension) -> None:
 PREFIXES = {"n": -9, "µ": -6, "u": -6, "m": -3, "c": -2, "d": -1, "k": 3, "M": 6, "G": 9}
 
 
-@pytest.mark.parametrize("base", ["m", "g", "s", "N", "J", "Pa", "Hz", "rad"])
+@pytest.mark.parametrize("base", ["m", "g", "s", "N", "Nm", "J", "Pa", "Hz", "rad"])
 def test_prefixes(base: str) -> None:
     whole = known_unit(base)
     for prefix, power in PREFIXES.items():

@@ -13,6 +13,7 @@ import sys
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -47,7 +48,7 @@ def test_every_point_is_its_own_cycle(bench, table):
     alone = ws.steady(bench.set("torques.0.value", -6e-6).set("contacts.0.friction", 0.15))
     assert row["amplitude_deg"] == alone.amplitude_deg
     assert row["rate_s_per_d"] == alone.rate_s_per_d
-    assert table.column("amplitude")[3] == alone.amplitude_deg
+    assert table["amplitude"][3] == table.column("amplitude_deg")[3] == alone.amplitude_deg
     assert row["verdict"] == "ticks"
 
 
@@ -81,6 +82,8 @@ def test_what_fails_keeps_its_reason(bench):
     found = ws.sweep(bench, {"bodies.lever.position.1": ["2.886751346 mm", "2.6 mm"]})
     assert [row["verdict"] for row in found.rows] == ["ticks", None]
     assert "overlap" in found.rows[1]["message"]
+    assert np.isnan(found["amplitude"]).tolist() == [False, True]
+    assert found["verdict"].tolist() == ["ticks", None]
     stopped = ws.sweep(bench.set("run.duration", "8 s"), {"torques.0.value": ["-0.01 µN·m"]})
     assert stopped.rows[0]["verdict"] == "stops"
     incline = ws.sweep(ws.profiles_dir() / "incline", {"contacts.0.friction": [0.2]})

@@ -76,6 +76,7 @@ def open_streams() -> None:
 #
 # Results go to stdout. Everything else goes to stderr, and progress is quiet where stderr is no terminal.
 
+SEEN = 1.0  # s, of progress that is seen before the time left is estimated
 NARROWEST, WIDEST = 0.06, 0.42  # m, of pictures for print
 FINE, MISSED, BAD_INPUT, GAVE_UP, FAULT, INTERRUPTED = 0, 1, 2, 3, 4, 130
 
@@ -103,6 +104,7 @@ class Progress:
         self._words = words
         self._start = time.monotonic()
         self._shown = 0.0
+        self._first: tuple[float, float] | None = None
         self._quiet = not sys.stderr.isatty()
 
     def __call__(self, done: float, whole: float) -> None:
@@ -111,8 +113,10 @@ class Progress:
             return
         self._shown = now
         elapsed = now - self._start
-        left = elapsed * (whole - done) / done if done > 0.0 and whole < math.inf else 0.0
-        words = f"\r{self._words}  {done:.4g} of {whole:.4g}   {_clock(elapsed)} elapsed, {_clock(left)} left"
+        first, begun = self._first = self._first or (done, now)
+        words = f"\r{self._words}  {done:.4g} of {whole:.4g}   {_clock(elapsed)} elapsed"
+        if now - begun > SEEN and done > first:  # what came before, such as compiling, does not come again
+            words += f", {_clock((now - begun) * (whole - done) / (done - first))} left"
         if whole == math.inf:  # nobody knows how many there will be
             words = f"\r{self._words}  {done:.4g}   {_clock(elapsed)} elapsed"
         self._show(f"{words:<79}")
@@ -170,8 +174,7 @@ def check_picture(target: str, source: str) -> None:
         raise InputError(f"--png {target}: the picture is a PNG, so its name must end in .png.")
     if path.resolve() == Path(source).resolve():
         raise InputError(f"--png {target}: is the input itself, which would be lost. Choose another name.")
-    if not path.parent.is_dir():
-        raise InputError(f"--png {target}: there is no folder {path.parent}; create it first.")
+    path.parent.mkdir(parents=True, exist_ok=True)
 
 
 def parse_width(text: str) -> float:

@@ -50,7 +50,9 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-o", "--output", metavar="DIR", help="write the better scene there, with its drawings")
     parser.add_argument("--duration", metavar="TIME", help='judge by the end of a run of that length instead, such as "60 s"')
     parser.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], help="change a value of the scene first")
-    parser.add_argument("--tol", metavar="X", type=float, help="relative error per step (default: the scene's, 1e-9)")
+    parser.add_argument(
+        "--tol", "--tolerance", metavar="X", type=float, help="relative error per step (default: the scene's, 1e-9)"
+    )
     parser.add_argument("--workers", metavar="N", type=int, default=1, help="processes, worth it for differential-evolution")
     parser.add_argument("--scheduler", metavar="ADDRESS", help="of dask.distributed, such as tcp://127.0.0.1:8786")
     parser.add_argument("--force", action="store_true", help="replace a folder that exists")

@@ -59,7 +59,9 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--duration", metavar="TIME", help='simulated time, such as "5 s" (default: the scene\'s)')
     parser.add_argument("--sample", metavar="N", type=int, help="of a study of tolerances in place of a scene: that watch")
     parser.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], help="change a value of the scene")
-    parser.add_argument("--tol", metavar="X", type=float, help="relative error per step (default: the scene's, 1e-9)")
+    parser.add_argument(
+        "--tol", "--tolerance", metavar="X", type=float, help="relative error per step (default: the scene's, 1e-9)"
+    )
     parser.add_argument("--method", choices=METHODS, help=f"solver (default {EVENT_DRIVEN})")
     parser.add_argument("--step", metavar="TIME", help='step of the method moreau, such as "10 µs" (the default)')
     parser.add_argument("--resume", metavar="RUN", help="go on from the end of this results folder, up to --duration")
@@ -94,7 +96,7 @@ def _run(args: argparse.Namespace, held: contextlib.ExitStack) -> int:
         scene = scene.set("run.record", [_record(what) for what in args.record])
     duration = None if args.duration is None else parse_positive("--duration", args.duration, TIME)
     step = None if args.step is None else parse_positive("--step", args.step, TIME)
-    _check_windows(scene, scene.duration if duration is None else duration, asked=bool(args.record))
+    scene = _with_windows(scene, scene.duration if duration is None else duration, requested=bool(args.record))
     check_tolerance(args.tol)
     method, start = args.method or EVENT_DRIVEN, None
     name = _name(scene) if args.sample is None else f"{Path(args.scene).resolve().name}-{args.sample}"
@@ -282,14 +284,26 @@ def _unlike(scene: Scene) -> str:
     return f"The inertia of {light}, {least:.3g} kg·m², {smaller}: is this intended?"
 
 
-def _check_windows(scene: Scene, duration: float, asked: bool) -> None:
-    """A window that the run never enters: refused where it was requested, else reported."""
+def _with_windows(scene: Scene, duration: float, requested: bool) -> Scene:
+    """A window of --record that the run never enters is refused; those of the scene are moved to the end of a shorter run."""
+    from watchsim.scene.scene import ALL, EVERY
+
     late = [window for window in scene.record.windows if window[0] >= duration]
-    for start, end in late:
+    if not late:
+        return scene
+    last = max(end for _, end in scene.record.windows)
+    if requested:
+        start, end = late[0]
         words = f"the run ends at {duration:g} s, so that nothing can be recorded from {start:g} s to {end:g} s"
-        if asked:
-            raise InputError(f"--record: {words}. Choose another window or a longer --duration.")
-        say(f"Note: {words} (the scene's run.record). --record all keeps everything.")
+        raise InputError(f"--record: {words}. Choose another window or a longer --duration.")
+    moved = [(max(0.0, start - last + duration), end - last + duration) for start, end in scene.record.windows]
+    kept = [(start, end) for start, end in moved if end > 0.0]
+    record: list[object] = [[f"{start!r} s", f"{end!r} s"] for start, end in kept]
+    listed = " and ".join(f"{start:g} s to {end:g} s" for start, end in kept)
+    say(f"Note: the run ends before the window of the scene's run.record; recorded is {listed} instead.")
+    words = [] if scene.record.keep == ALL else [scene.record.keep]
+    words += [] if scene.record.stride == 1 else [f"{EVERY} {scene.record.stride}"]
+    return scene.set("run.record", [*record, *words])
 
 
 def _record(what: str) -> object:

@@ -18,7 +18,9 @@ LABEL = 13
 def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("scene", metavar="SCENE", help="a scene file (TOML), or the folder that holds scene.toml")
     parser.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], help="change a value of the scene")
-    parser.add_argument("--tol", metavar="X", type=float, help="relative error per step (default: the scene's, 1e-9)")
+    parser.add_argument(
+        "--tol", "--tolerance", metavar="X", type=float, help="relative error per step (default: the scene's, 1e-9)"
+    )
     parser.add_argument("--all", action="store_true", help="every cycle, stable or not, and which swings lead to which")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
 

@@ -56,7 +56,9 @@ def options(parser: argparse.ArgumentParser) -> None:
         "--sensitivity", action="store_true", help="derivatives by every number of the scene, or by the KEYs named"
     )
     parser.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], help="change a value of the scene")
-    parser.add_argument("--tol", metavar="X", type=float, help="relative error per step (default: the scene's, 1e-9)")
+    parser.add_argument(
+        "--tol", "--tolerance", metavar="X", type=float, help="relative error per step (default: the scene's, 1e-9)"
+    )
     parser.add_argument("--workers", metavar="N", type=int, help="processes (default: as many as there are processors)")
     parser.add_argument("--scheduler", metavar="ADDRESS", help="of dask.distributed, such as tcp://127.0.0.1:8786")
     parser.add_argument("--resume", action="store_true", help="go on with what the results folder holds")

@@ -333,6 +333,9 @@ def _judgement(numbers: Mapping[str, Any]) -> Iterator[Markup]:
 
 def _parameters(run: Trajectory) -> Iterator[Markup]:
     rows = parameters(run.scene)
+    if abs(run.simulated - run.scene.duration) > 1e-9 * run.scene.duration:
+        rows = [(key, value) for key, value in rows if key != "run.duration"]
+        rows.append(("run.duration", f"{run.simulated:.9g} s simulated; {run.scene.duration:.9g} s in the scene"))
     if rows:
         listed = (element("div", element("dt", _breakable(key)), element("dd", value)) for key, value in rows)
         yield section("parameters", "Parameters", element("dl", *listed))

@@ -121,6 +121,7 @@ def _rectangle_of(place: str) -> Array | None:
 
 
 def _outlines(run: Trajectory, place: str, stones: PalletStones) -> tuple[Body, Sequence[Loop]]:
+    place = place.replace(" pallet", " stone") if place.endswith(" pallet") else place
     if place in STONES and all(body.name != place for body in run.scene.bodies):
         try:
             lever, loop = stones.stone(place)

@@ -30,7 +30,7 @@ def secure_folder(target: Path, what: str, room: float = LEAST_ROOM) -> list[str
     place = _looked_up(target, what)
     if place.exists() and not place.is_dir():
         raise FileExistsError(f"{target} is a file; {what} need a folder of their own")
-    _check_parent(target, place)
+    _make_parent(target, place)
     said = sweep(place.parent)
     if place.is_dir():
         said += sweep(place)
@@ -45,7 +45,7 @@ def secure_file(target: Path, what: str, room: float = 0.0) -> list[str]:
     place = _looked_up(target, what)
     if place.is_dir():
         raise IsADirectoryError(f"{target} is a folder; {what} needs the name of a file in it")
-    _check_parent(target, place)
+    _make_parent(target, place)
     said = sweep(place.parent)
     if place.exists() and not os.access(place, os.W_OK):
         raise PermissionError(f"{target} exists and is write-protected. Choose another name")
@@ -80,11 +80,16 @@ def _look(path: Path, target: Path) -> None:
         raise type(error)(f"{target}: cannot be written: {reason(error)}. Choose another place") from error
 
 
-def _check_parent(target: Path, place: Path) -> None:
-    parent = place.parent
-    if not parent.is_dir():
-        there = "is a file, not a folder" if parent.exists() else "does not exist; create it first"
-        raise FileNotFoundError(f"{target}: the folder {parent} {there}")
+def _make_parent(target: Path, place: Path) -> None:
+    """The folders above the place; OSError where one of them cannot be made."""
+    try:
+        place.parent.mkdir(parents=True, exist_ok=True)
+    except FileExistsError as error:
+        raise FileNotFoundError(f"{target}: the folder {place.parent} is a file, not a folder") from error
+    except OSError as error:
+        raise type(error)(
+            f"{target}: the folder {place.parent} cannot be made: {reason(error)}. Choose another place"
+        ) from error
 
 
 def _check_replaceable(target: Path, place: Path) -> None:

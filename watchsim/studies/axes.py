@@ -14,7 +14,7 @@ import numpy as np
 from watchsim.scene.assign import dimension_of
 from watchsim.scene.errors import Fault, SceneError
 from watchsim.scene.scene import Scene
-from watchsim.units import NUMBER, Dimension, UnitError, parse, split
+from watchsim.units import NUMBER, Dimension, UnitError, parse, split, to
 
 MOST = 100_000  # points of a sweep
 
@@ -34,6 +34,12 @@ class Axis:
     def column(self) -> str:
         """Name of the column in a table, with its unit."""
         return f"{self.key}_{slug(self.si)}" if self.si else self.key
+
+    @property
+    def first(self) -> Value:
+        """The first value as it was typed, so that what is said of it is said in its unit."""
+        value = self.values[0]
+        return value if isinstance(value, str) or not self.usual else f"{to(value, self.usual):.12g} {self.usual}"
 
     @property
     def is_numeric(self) -> bool:
@@ -80,7 +86,7 @@ def checked(scene: Scene, axes: Sequence[Axis], found: Sequence[Fault] = ()) -> 
             faults.append(Fault(axis.key, "is given twice; name each key once", place="sweep"))
             continue
         try:
-            scene.set(axis.key, axis.values[0])
+            scene.set(axis.key, axis.first)
         except SceneError as error:
             faults += (replace(fault, place="sweep") for fault in error.faults)
     points = int(np.prod([len(axis.values) for axis in axes], dtype=float)) if axes else 0
@@ -103,14 +109,14 @@ def _axis(scene: Scene, key: str, told: str) -> Axis:
             raise UnitError(f"{count} values are more than the {MOST} a sweep takes")
         if int(count) == 1 and start != end:
             raise UnitError("one value cannot go from one number to another; write at least 2, or the value itself")
-        return _made(key, [float(value) for value in np.linspace(start, end, int(count))], dimension)
+        return _made(key, [float(value) for value in np.linspace(start, end, int(count))], dimension, unit)
     if dimension is not None and len(parts) != 1:
         raise UnitError("write FROM:TO:N, such as 0.1:0.2:5, or values with commas between them")
     items = [item.strip() for item in told.split(",")]
     if dimension is None:
         return _made(key, items, None)
     unit = split(items[-1])[1]
-    return _made(key, [_quantity(item, unit, dimension) for item in items], dimension)
+    return _made(key, [_quantity(item, unit, dimension) for item in items], dimension, unit)
 
 
 def _quantity(text: str, unit: str, dimension: Dimension) -> float:
@@ -125,9 +131,10 @@ def _si(value: Any, dimension: Dimension | None) -> Value:
     return float(value)
 
 
-def _made(key: str, values: list[Any], dimension: Dimension | None) -> Axis:
+def _made(key: str, values: list[Any], dimension: Dimension | None, typed: str = "") -> Axis:
+    """`typed`: the unit that the values were given in."""
     if not values:
         raise UnitError("no values are given")
     if dimension is None or dimension is NUMBER:
         return Axis(key, tuple(values))
-    return Axis(key, tuple(values), dimension.si, dimension.usual[1])
+    return Axis(key, tuple(values), dimension.si, typed or dimension.usual[1])

@@ -10,6 +10,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from watchsim.displays import notebook_html
 from watchsim.scene.read_settings import FUNCTION
 from watchsim.scene.scene import Scene
@@ -44,10 +47,24 @@ class Sweep:
     def _repr_html_(self) -> str:
         return notebook_html(self)
 
-    def column(self, name: str) -> list[Any]:
-        """The values of a key, an output ("amplitude") or a column ("amplitude_deg_error") in all rows; else KeyError."""
+    def column(self, name: str) -> NDArray[Any]:
+        """(n,): a key, an output ("amplitude") or a column ("amplitude_deg_error") in all rows, `table[name]` for short.
+
+        Numbers are floats, nan where a row has none; of texts an array of objects. KeyError for any other name.
+        """
         names = {one.name: one.column for one in self.outputs}
-        return [row[names.get(name, name)] for row in self.rows]
+        values = [row[names.get(name, name)] for row in self.rows]
+        if any(isinstance(value, (str, Mapping)) for value in values):
+            return np.array(values, dtype=object)
+        return np.array([np.nan if value is None else value for value in values], dtype=float)
+
+    __getitem__ = column
+
+    def to_pandas(self) -> Any:
+        """A DataFrame with a column for each key and each entry of the rows; ImportError where pandas is not installed."""
+        import pandas  # type: ignore[import-untyped, unused-ignore]
+
+        return pandas.DataFrame({name: self.column(name) for name in (self.rows[0] if self.rows else ())})
 
     def numbers(self) -> dict[str, Any]:
         """What `sweep --json` prints: keys (values in SI), outputs (columns), rows, wall_s."""
