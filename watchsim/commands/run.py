@@ -301,9 +301,9 @@ def _with_windows(scene: Scene, duration: float, requested: bool) -> Scene:
     record: list[object] = [[f"{start!r} s", f"{end!r} s"] for start, end in kept]
     listed = " and ".join(f"{start:g} s to {end:g} s" for start, end in kept)
     say(f"Note: the run ends before the window of the scene's run.record; recorded is {listed} instead.")
-    words = [] if scene.record.keep == ALL else [scene.record.keep]
-    words += [] if scene.record.stride == 1 else [f"{EVERY} {scene.record.stride}"]
-    return scene.set("run.record", [*record, *words])
+    record += [] if scene.record.keep == ALL else [scene.record.keep]
+    record += [] if scene.record.stride == 1 else [f"{EVERY} {scene.record.stride}"]
+    return scene.set("run.record", record)
 
 
 def _record(what: str) -> object:
