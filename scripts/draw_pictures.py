@@ -1,10 +1,11 @@
 """The pictures of the pages, and the pages that hold little else.
 
-    python scripts/draw_pictures.py kinds|laws|beat|mechanisms|movies|gallery|plots|shrink [profile]
+    python scripts/draw_pictures.py kinds|laws|beat|mechanisms|movies|gallery|plots|tolerances|shrink [profile]
 
 kinds: the kinds of contact (docs/theory/contact-geometry.md); laws: the laws of contact, the expansion read off the solver
 itself; beat: angles and velocities of the Swiss lever; mechanisms, movies: those of docs/guide/mechanisms.md, of one profile
-or all; gallery, plots: docs/guide/gallery.md and plots.md, from the commands that they show. shrink goes last.
+or all; gallery, plots: docs/guide/gallery.md and plots.md, from the commands that they show;
+tolerances: the studies of docs/guide/tolerances.md. shrink goes last.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ import watchsim as ws
 from watchsim.geometry.loops import Loop, polyline
 from watchsim.geometry.primitives import Arc, Line, Point
 from watchsim.render.palette import BRASS, FAINT, INK, STEEL
-from watchsim.render.style import HAIR, LABEL, SERIES, SMALL, TICK, figure, save
+from watchsim.render.style import HAIR, LABEL, SERIES, SMALL, TICK, figure, save, small_png
 from watchsim.render.style import title as named
 from watchsim.verification.random_problems import BareContacts
 
@@ -551,6 +552,15 @@ def plots() -> None:
     PLOTS_PAGE.write_text("\n".join(parts), encoding="utf-8")
 
 
+def tolerances() -> None:
+    """The studies of docs/guide/tolerances.md: 256 watches each, some minutes; what results/ holds is gone on with."""
+    for scene in sorted((ROOT / "docs" / "guide" / "tolerances").glob("*.toml")):
+        folder = ROOT / "results" / f"tolerances_{scene.stem}"
+        study = ws.tolerance(scene, 256, workers=2, folder=folder, resume=True)
+        (IMAGES / f"tolerances_{scene.stem}.png").write_bytes(small_png(ws.plot_tolerance(study), 1100))
+        print(f"{scene.stem}: {study.message}")
+
+
 def shrink() -> None:
     """PNG files with a palette of 256 colours where no pixel changes by more than can be seen (24 of 255, 0.3 on average)."""
     for path in IMAGES.rglob("*.png"):
@@ -564,7 +574,15 @@ def shrink() -> None:
             small.save(path, optimize=True)
 
 
-PARTS = {"kinds": contact_kinds, "laws": laws, "beat": beat, "gallery": gallery, "plots": plots, "shrink": shrink}
+PARTS = {
+    "kinds": contact_kinds,
+    "laws": laws,
+    "beat": beat,
+    "gallery": gallery,
+    "plots": plots,
+    "tolerances": tolerances,
+    "shrink": shrink,
+}
 OF_PROFILES = {"mechanisms": mechanisms, "movies": movies}
 
 if __name__ == "__main__":

@@ -127,6 +127,16 @@ def test_the_interval_of_the_yield_covers_the_true_one_in_95_of_100(limit, count
     assert covered / repetitions <= 0.98 or limit == 3.0
 
 
+def test_two_dimensions_that_matter_together_are_drawn_independently_in_short_sequences():
+    """Of few Sobol points some pairs of columns lie on a diagonal; the same pair in all sequences would spoil the yield."""
+    space, shares = uniform(20), []
+    for seed in range(30):
+        x, sequence = drawn(space, 512, seed)
+        shares.append(share_of(~((x[:, 8] > 0.6) & (x[:, 10] < 0.4)), sequence).value)
+    assert np.mean(shares) == pytest.approx(0.84, abs=0.008)
+    assert np.std(shares) < math.sqrt(0.16 * 0.84 / 512)
+
+
 def test_a_control_variate_narrows_the_interval_and_leaves_the_mean():
     space = normal(4)
     truths, ratios = [], []

@@ -28,7 +28,7 @@ def options(parser: argparse.ArgumentParser) -> None:
         "--png",
         metavar="FILE",
         help="where to write a picture of the start position, what can ever touch in colour; of an escapement also "
-        "FILE_function.png, its geometry of function",
+        "FILE_function.png, its geometry of function; of a scene with tolerances FILE_tolerances.png",
     )
     parser.add_argument("--dark", action="store_true", help="pictures, sheet and movie on dark ground")
     parser.add_argument("--sheet", metavar="FILE", help="where to write the geometry of function alone (.png, .svg or .pdf)")
@@ -92,6 +92,8 @@ def run(args: argparse.Namespace) -> int:
         if function.pallets is not None:
             sheets.append(Path(args.png).with_name(f"{Path(args.png).stem}_function.png"))
         say(f"Picture: {args.png}")
+        if scene.tolerances:
+            _limits(scene, Path(args.png).with_name(f"{Path(args.png).stem}_tolerances.png"), args.dark)
     for path in sheets:
         _sheet(scene, compiled, function, path, width, args.dark)
     if args.json:
@@ -110,6 +112,17 @@ def _check_options(args: argparse.Namespace) -> None:
         raise InputError("--dark: nothing is drawn; give --png, --sheet or --movie.")
     if not args.turn and (args.swing or args.movie):
         raise InputError(f"{'--swing' if args.swing else '--movie'}: needs --turn.")
+
+
+def _limits(scene: Scene, path: Path, on_dark: bool) -> None:
+    from watchsim.render.palette import dark
+    from watchsim.render.style import save
+    from watchsim.render.tolerance_plot import plot_limits
+    from watchsim.storage.write import write_file
+
+    figure = plot_limits(scene)
+    write_file(path, lambda place: save(dark(figure) if on_dark else figure, place), "the picture")
+    say(f"Tolerances: {path}")
 
 
 def _sheet(scene: Scene, compiled: Compiled, function: Function, path: Path, width: float, on_dark: bool) -> None:

@@ -12,7 +12,9 @@ from matplotlib.figure import Figure
 from watchsim.render import style
 from watchsim.render.palette import FAINT, GRID, INK
 from watchsim.render.study_plot import output_label
+from watchsim.scene.scene import Scene
 from watchsim.studies.point import OUTPUTS, Output
+from watchsim.studies.sampling import deviation
 from watchsim.studies.study_report import WHETHER
 from watchsim.studies.tolerance_result import Contribution, Samples, ToleranceStudy, apart
 from watchsim.units import known_unit
@@ -101,7 +103,7 @@ def _bars(axes: Axes, label: str, each: tuple[Contribution, ...], explained: flo
     axes.set_ylim(max(len(shown), 3) - 0.4, -0.6)
     axes.set_xlim(0.0, 1.0)
     style.title(axes, label)
-    known = "rank correlation" if ranks else f"share of the variance; {100.0 * explained:.3g} % explained"
+    known = "rank correlation" if ranks else f"share; {100.0 * explained:.3g} % explained"
     axes.set_xlabel(known, fontsize=style.SMALL)
     style.ticks(axes.xaxis, 4)
     style.dress(axes, grid="x")
@@ -168,3 +170,30 @@ def _values(study: ToleranceStudy, samples: Samples, name: str) -> tuple[np.ndar
     big = one.dimension.usual[1] if one.unit == "µm" and abs(one.nominal) > 1e-4 else one.unit
     unit = f" ({big})" if big else ""
     return (one.nominal + samples.deviations[:, places[0]]) / known_unit(big).factor, f"{short_name(name)}{unit}"
+
+
+ROW, AROUND = 7.5, 16.0  # mm, of a tolerance, and of the title
+NODES, DENSITY_BINS = 4000, 26  # bins of a tenth of half the width: limits are edges of them
+
+
+def plot_limits(scene: Scene, width: float = style.FULL) -> Figure:
+    """The tolerances of a scene: a line each, with the frequency of its deviations between its limits."""
+    count = len(scene.tolerances)
+    made = style.figure(width, AROUND + ROW * count)
+    style.heading(made, style.cut(scene.title), "what its watches are made to")
+    axes = made.add_axes((0.36, 6.0 / (AROUND + ROW * count), 0.2, ROW * count / (AROUND + ROW * count)))
+    for row, one in enumerate(scene.tolerances):
+        u = (np.arange(NODES) + 0.5) / NODES
+        x = deviation(one, u)
+        middle, half = 0.5 * (one.low + one.high), 0.5 * (one.high - one.low)
+        counts, edges = np.histogram((x - middle) / half, bins=DENSITY_BINS, range=(-1.3, 1.3))
+        axes.bar(edges[:-1], -0.75 * counts / counts.max(), 0.1, row + 0.4, align="edge", color=style.GOOD, linewidth=0.0)
+        for end in (-1.0, 1.0):
+            axes.plot([end, end], [row - 0.4, row + 0.4], color=INK, linewidth=style.CURVE)
+        words = {"fontsize": style.SMALL, "color": INK, "va": "center"}
+        axes.text(-1.45, row, f"{short_name(one.key)}   {one.shown(one.nominal)}", ha="right", **words)  # type: ignore[arg-type]
+        axes.text(1.45, row, one.words, ha="left", **words)  # type: ignore[arg-type]
+    axes.set_ylim(count - 0.5, -0.5)
+    axes.set_xlim(-1.35, 1.35)
+    axes.set_axis_off()
+    return made

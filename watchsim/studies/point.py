@@ -102,7 +102,10 @@ def answer(question: Question, changes: Mapping[str, Value], interrupted: Callab
         row["seconds"] = {"geometry": time.perf_counter() - begun}
         row.update(function_of(scene, question.function) if question.function is not None else {})
         row["seconds"]["function"] = time.perf_counter() - begun - row["seconds"]["geometry"]
+        unmeasured = row["message"]
         row.update(_by_shooting(question, scene) if question.by_shooting else _by_run(question, scene, interrupted))
+        if row["verdict"] is not None:
+            row["message"] = row["message"] or unmeasured
     except SceneError as error:
         row["message"] = " ".join(str(error).split())
     seconds = row.setdefault("seconds", {})
@@ -126,6 +129,9 @@ def function_of(scene: Scene, few: int | None = None) -> Row:
         each = [getattr(one, field) for one in found.pallets or () for field in fields]
         row[f"{name}_deg"] = _worst(min, [value for one in each for value in (one.value, one.worst)])
     row["freedom_deg"] = _worst(max, [one.worst.value for one in found.safety or ()])
+    row["message"] = (
+        "" if found.pallets is not None else "; ".join(f"{what} not measured, {why}" for what, why in found.missing)
+    )
     return row
 
 

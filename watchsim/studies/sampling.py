@@ -94,10 +94,13 @@ class Space:
         out = np.empty((len(asked), wide))
         for sequence in np.unique(asked % SEQUENCES):
             mine = asked % SEQUENCES == sequence
+            chance = np.random.default_rng([seed, int(sequence)])
+            # Of few points some pairs of columns lie on a diagonal (Joe and Kuo 2008): in each sequence it is another pair.
+            order = chance.permutation(wide)
             with warnings.catch_warnings():  # of points that are no power of two: balanced enough, see the coverage in tests
                 warnings.simplefilter("ignore", UserWarning)
-                engine = qmc.Sobol(wide, scramble=True, bits=BITS, seed=np.random.default_rng([seed, int(sequence)]))
-                points = engine.random(int(asked[mine].max()) // SEQUENCES + 1)
+                engine = qmc.Sobol(wide, scramble=True, bits=BITS, seed=chance)
+                points = engine.random(int(asked[mine].max()) // SEQUENCES + 1)[:, order]
             out[mine] = points[asked[mine] // SEQUENCES]
         return np.clip(out, CLEAR, 1.0 - CLEAR)
 

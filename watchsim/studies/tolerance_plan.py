@@ -51,7 +51,7 @@ class Limit:
         low, high = self.expectation.bounds
         name = self.expectation.key.replace("_", " ")
         if value is None:
-            return f"no {name}"
+            return f"{name} not measurable"
         return f"{name} too low" if value * self.factor < low else f"{name} too high" if value * self.factor > high else ""
 
 

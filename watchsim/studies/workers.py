@@ -211,6 +211,8 @@ class Cluster:
             raise ValueError(f"--scheduler {address}: no scheduler answers there ({error})") from error
 
     def answers(self, question: Question, points: Points, interrupted: Callable[[], bool]) -> Iterator[tuple[int, Row]]:
+        if self._client.status == "closed":  # by the end of an earlier question
+            self._client = self._distributed.Client(self._address, timeout=TIMEOUT, set_as_default=False)
         waiting = list(reversed(points))
         under_way: dict[Any, Any] = {}  # what was promised -> its point
         try:
