@@ -16,6 +16,7 @@ from watchsim import jit
 from watchsim.jit import callable_kernel
 from watchsim.mechanism.compile import compile_scene
 from watchsim.model import blank
+from watchsim.scene.load import load
 from watchsim.scene.scene import Body, Scene
 from watchsim.simulation.closed_contacts import is_explained
 from watchsim.simulation.coupled_motion import NORMAL
@@ -200,3 +201,17 @@ def test_a_rocking_block_comes_to_rest_on_both_corners() -> None:
     np.testing.assert_allclose(done.end_u, 0.0, atol=1e-9)
     assert done.end_q[1] == pytest.approx(0.5 * side, abs=1e-10)
     assert done.end_q[2] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_run_that_crawls_says_who_and_since_when() -> None:
+    """Two levers that rock flat on each other without loss: thousands of rebounds while their play closes."""
+    said: list[str] = []
+
+    def progress(*_: float) -> None: ...
+
+    progress.crowded = said.append  # type: ignore[attr-defined]
+    scene = load(ROOT / "tests" / "data" / "hunt" / "levers-2001-15091.toml")
+    simulate(scene, progress=progress)
+    slow = [words for words in said if words]
+    assert said[0] == "" and slow
+    assert slow[-1].startswith("slow since t = 0.") and "touch" in slow[-1]

@@ -106,6 +106,13 @@ class Progress:
         self._shown = 0.0
         self._first: tuple[float, float] | None = None
         self._quiet = not sys.stderr.isatty()
+        self._crowd = ""
+
+    def crowded(self, words: str) -> None:
+        """Say on a line of its own why it crawls, once each time that it begins to."""
+        if words and not self._crowd and not self._quiet:
+            self._show(f"\r{words:<79}\n")
+        self._crowd = words
 
     def __call__(self, done: float, whole: float) -> None:
         now = time.monotonic()

@@ -211,6 +211,7 @@ def simulate_with_progress(
         meanwhile.progress()
         progress(time, end)
 
+    stepped.crowded = progress.crowded  # type: ignore[attr-defined]
     follow = meanwhile.follow if start is None else None
     try:
         run = simulate(

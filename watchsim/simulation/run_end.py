@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Container, Mapping, Sequence
 from typing import Any
@@ -151,6 +152,33 @@ def unexplained(state: State, pairs: Sequence[Pair]) -> str:
     ids = state.regime.active[: state.instant.awake_contacts].tolist()
     touching = "in contact: " + "; ".join(str(pairs[k]) for k in ids[:MANY]) if ids else ""
     return ". ".join(filter(None, (touching, ADVICE_STOP_DETAILS)))
+
+
+CROWDED = 20.0  # instants with events in a thousandth of the scene's unit of time: a watch has one or two
+FEWEST_CROWDED = 50  # such instants between two looks; fewer say nothing about their pace
+
+
+class Crowd:
+    """Do events crowd, so that a run crawls? Looked at between slices; `unit` is the scene's unit of time, s."""
+
+    def __init__(self, unit: float) -> None:
+        self._unit, self._time, self._instants = unit, 0.0, 0
+        self.since: float | None = None  # s
+        self.pace = 0.0  # instants with events in a thousandth of the unit
+
+    def look(self, time: float, instants: int) -> None:
+        """Note how many `instants` with events there were by `time` (s)."""
+        more, passed = instants - self._instants, time - self._time
+        if more < FEWEST_CROWDED and not passed > FEWEST_CROWDED / CROWDED * 1e-3 * self._unit:
+            return
+        self.pace = more / passed * 1e-3 * self._unit if passed > 0.0 else math.inf
+        self.since = None if self.pace < CROWDED else self._time if self.since is None else self.since
+        self._time, self._instants = time, instants
+
+    def words(self, who: str) -> str:
+        """ "" unless they do."""
+        per = "ms" if self._unit == 1.0 else f"{self._unit:.3g} ms"
+        return "" if self.since is None else f"slow since t = {self.since:.6g} s, {self.pace:.3g} events per {per}: {who}"
 
 
 def what_alternates(ended: Ended, pairs: Sequence[Pair], bodies: Sequence[str]) -> str:

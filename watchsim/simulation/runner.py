@@ -35,6 +35,7 @@ from watchsim.simulation.overlap_watch import OverlapWatch
 from watchsim.simulation.overlap_watch import warm_up as warm_up_watch
 from watchsim.simulation.recording import Recorder, Tally, columns_of, pairs_of, tail_length
 from watchsim.simulation.run_end import (
+    Crowd,
     driven_into,
     failure_of,
     furthest,
@@ -236,6 +237,7 @@ class Run:
         self.watch = OverlapWatch(scene, compiled, self.method, self.kept.windows)
         self.stored_at_start = stored_energy(model, self.state.q, self.state.u)
         self._usual_energy = usual_energy(model)
+        self.crowd = Crowd(compiled.unit)
         self.foregone: Foregone | None = None  # looks for what ends the run early
         self.saved: SavedState | None = None
         self.parts_before = 0  # what was flushed before the state was saved
@@ -371,9 +373,17 @@ class Run:
             if self._is_foregone():
                 return Stop.FOREGONE
             if progress is not None:
+                self._tell_crowd(getattr(progress, "crowded", None))
                 progress(float(self.state.clock.time), duration)
             if interrupted():
                 return Stop.INTERRUPTED
+
+    def _tell_crowd(self, crowded: Callable[[str], None] | None) -> None:
+        self.crowd.look(float(self.state.clock.time), int(self.state.counts.instants))
+        if crowded is not None:
+            model, bodies = self.compiled.model, [body.name for body in self.scene.bodies]
+            who = what_alternates(self.scratch.ended, self.pairs, [bodies[k] for k in model.coordinates.body])
+            crowded(self.crowd.words(who))
 
     def _is_foregone(self) -> bool:
         time = float(self.state.clock.time)

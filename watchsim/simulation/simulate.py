@@ -111,7 +111,8 @@ def simulate(  # noqa: PLR0913 - options, by name
     duration   seconds, or a text with its unit such as "5 s"; so is `step`
     record     what is kept: windows (s) of rows, "events", "statistics" or a `Recording`; default the scene's, else
                everything
-    progress   called as progress(simulated, duration) about ten times a second
+    progress   called as progress(simulated, duration) about ten times a second; before that its attribute `crowded`, if it has
+               one, with words where events crowd so that the run crawls (which contacts, since when), else with ""
     prefilter  off: every declared pair of primitives is looked at in every step; slow, the same events
     method     "pfeiffer-glocker" (by events) or "moreau" (fixed steps of `step` seconds, default 10 µs; see
                docs/theory/method.md)
