@@ -32,7 +32,7 @@ import watchsim as ws
 from watchsim.geometry.loops import Loop, polyline
 from watchsim.geometry.primitives import Arc, Line, Point
 from watchsim.render.palette import BRASS, FAINT, INK, STEEL
-from watchsim.render.style import HAIR, LABEL, SERIES, SMALL, TICK, figure, save, small_png
+from watchsim.render.style import HAIR, LABEL, SERIES, SMALL, TICK, figure, save
 from watchsim.render.style import title as named
 from watchsim.verification.random_problems import BareContacts
 
@@ -552,12 +552,15 @@ def plots() -> None:
     PLOTS_PAGE.write_text("\n".join(parts), encoding="utf-8")
 
 
+TOLERANCE_DPI = 160
+
+
 def tolerances() -> None:
     """The studies of docs/guide/tolerances.md: 256 watches each, some minutes; what results/ holds is gone on with."""
     for scene in sorted((ROOT / "docs" / "guide" / "tolerances").glob("*.toml")):
         folder = ROOT / "results" / f"tolerances_{scene.stem}"
         study = ws.tolerance(scene, 256, workers=2, folder=folder, resume=True)
-        (IMAGES / f"tolerances_{scene.stem}.png").write_bytes(small_png(ws.plot_tolerance(study), 1100))
+        ws.plot_tolerance(study).savefig(IMAGES / f"tolerances_{scene.stem}.png", dpi=TOLERANCE_DPI)
         print(f"{scene.stem}: {study.message}")
 
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import io
 from pathlib import Path
 
 from watchsim.pages.html import Content, Markup, element, image, joined, section, table
 from watchsim.pages.report_page import check_page
-from watchsim.render.style import MM, small_png
+from watchsim.render.style import MM
 from watchsim.render.tolerance_plot import plot_tolerance
 from watchsim.storage.write import write_file
 from watchsim.studies.point import OUTPUTS
@@ -28,7 +29,9 @@ def tolerance_page(study: ToleranceStudy, path: str | Path) -> Path:
     """Write the study as one self-contained HTML file; ValueError for a path with another ending, OSError where it fails."""
     target = check_page(path)
     figure = plot_tolerance(study)
-    picture = image(small_png(figure, DOTS), f"plots of the study: {study.message}", round(figure.get_figwidth() / MM * 6))
+    drawn = io.BytesIO()
+    figure.savefig(drawn, format="png", dpi=DOTS / figure.get_figwidth())
+    picture = image(drawn.getvalue(), f"plots of the study: {study.message}", round(figure.get_figwidth() / MM * 6))
     parts = [
         element("h1", study.title),
         element("p", f"{study.message}.", class_="yield"),
