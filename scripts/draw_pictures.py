@@ -355,7 +355,7 @@ EXHIBITS = (
     ),
     Exhibit(
         "tall.gif",
-        "The same, for a telephone",
+        "The same, for a phone",
         "A tall picture has its insets above, and its strip of angle and velocity below; here on dark ground.",
         f"watchsim movie swiss {BEAT} --speed adaptive --length 4s --fps 12 --size 450x800 --dark --phases --strip "
         '--inset "entry stone" --inset "exit stone" -o tall.gif',
@@ -380,7 +380,7 @@ EXHIBITS = (
     ),
     Exhibit(
         "timeline.png",
-        "The mechanism amid each phase",
+        "The mechanism during each phase",
         "With the forces on the lever. More [plots](plots.md).",
         "watchsim plot swiss --kind timeline -o timeline.png",
     ),
@@ -400,7 +400,7 @@ EXHIBITS = (
     ),
     Exhibit(
         "duplex.png",
-        "A duplex amid each phase",
+        "A duplex during each phase",
         "The wheel goes on in every other half swing: out of the notch, onto the pallet, and to rest on the roller.",
         "watchsim plot duplex --kind timeline -o duplex.png",
         'watchsim run profiles/duplex --duration "2 s" -o duplex',
@@ -485,7 +485,7 @@ PLOTS = (
     ),
     Exhibit(
         "timeline.png",
-        "The mechanism amid each phase",
+        "The mechanism during each phase",
         "The parts around the lever in the middle of every phase, with the contact forces on the lever as arrows of one scale; numbers show when.",
         "watchsim plot swiss --kind timeline -o timeline.png",
     ),

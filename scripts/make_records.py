@@ -1,6 +1,6 @@
 """What does the program say otherwise than it did, of the drawings, scenes and runs in tests/records?
 
-Prints what moved and writes the records anew (`--dry`: only prints). Of runs all numbers are left out that move when the scene
+Prints what moved and rewrites the records (`--dry`: only prints). Of runs all numbers are left out that move when the scene
 is changed by rounding, so that the records hold on any machine.
 """
 

@@ -48,7 +48,7 @@ def chosen(names: list[str]) -> dict[str, Recorded]:
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--write", action="store_true", help="write the record anew")
+    parser.add_argument("--write", action="store_true", help="rewrite the record")
     parser.add_argument("--mechanisms", type=int, default=240, help="of the hunt, from which to choose (default %(default)s)")
     given = parser.parse_args()
     before = read() if PLACE.is_file() else {}

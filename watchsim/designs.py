@@ -62,7 +62,9 @@ class Drawn:
         if target.is_file():
             raise FileExistsError(f"{target} is a file; drawings and scene need a folder of their own")
         if not force and target.is_dir() and next(target.iterdir(), None) is not None:
-            raise FileExistsError(f"{target} exists already and is left alone. Choose another folder, or replace with --force")
+            raise FileExistsError(
+                f"{target} already exists and was not changed. Choose another folder, or replace with --force"
+            )
         files = self.files()
 
         def fill(place: Path) -> None:

@@ -24,7 +24,7 @@ from typing import IO, Any
 # Where is the machine code of the kernels kept?
 #
 # A cached kernel does not notice when a function it calls in another file changes, so the folder carries a digest of every
-# source a kernel can reach: after an edit there the kernels are compiled anew. `WATCHSIM_CACHE` names another folder. What
+# source a kernel can reach: after an edit there the kernels are recompiled. `WATCHSIM_CACHE` names another folder. What
 # lies there is executed, so nobody else may be able to put something there.
 
 PACKAGE = Path(__file__).resolve().parent

@@ -232,7 +232,7 @@ BODY_PAIR = np.dtype(
         ("wrap0", "i8"),
         ("wrap1", "i8"),
         ("wrap2", "i8"),
-        ("fold0", "i8"),  # by 1/fold of a turn the body's outline comes back onto itself
+        ("fold0", "i8"),  # the fold of the rotational symmetry of the body's outline
         ("fold1", "i8"),
         ("fold2", "i8"),
         ("frame", "i8"),  # the body that carries both, in whose frame the cells are given, -1: the movement

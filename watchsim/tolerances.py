@@ -69,7 +69,7 @@ NO_DIRECTION = 1e-9
 # Of the largest force: by so much a law may be missed. Large: forces that pull; small: needless searches.
 LAW_SLACK = 1e-9
 # Of the force at which a mode ends: by so much laws may be missed that leave no forces at all, less than `BEGIN_SLACK`.
-# Large: a mode that has ended begins anew; small: modes end where time cannot go on.
+# Large: a mode that has ended starts again; small: modes end where time cannot go on.
 LAW_SHARE = 0.25
 # What a free direction of length one does for a law by rounding. Large: laws unmet; small: boundless forces.
 LAW_ROUNDING = 1e-11
@@ -227,7 +227,7 @@ SLIP_SLACK = 2.0
 
 # Of the island's largest force: smaller ones have no sign. Large: kept although they pull; small: let go by rounding.
 FORCE_NOISE = 1e-14
-# Of the slack with which a mode ends: one that has ended is not begun anew. Large: modes alternate; small: early ends.
+# Of the slack with which a mode ends: one that has ended does not start again. Large: modes alternate; small: early ends.
 BEGIN_SLACK = 0.5
 # Times more lenient when modes come back at one instant. Large: coarse terms; small: more rounds.
 LENIENCE_STEP = 10.0

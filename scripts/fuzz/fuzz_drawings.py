@@ -83,7 +83,7 @@ SUMMARY = re.compile(r"(\d+) (\w+) files from number (\d+): (.*); [\d.]+ s, the 
 
 
 class Worker:
-    """A process that reads damaged files; begun anew when it dies or hangs."""
+    """A process that reads damaged files; restarted when it dies or hangs."""
 
     def __init__(self, name: str) -> None:
         self.name = name

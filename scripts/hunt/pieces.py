@@ -1,7 +1,7 @@
 """How much of a disagreement do two runs make on the way, and how much has only grown from rounding?
 
 Unstable motion multiplies: a cam that chatters under an arm turns the rounding of one impact into 10⁻³ of the size. Twins,
-which differ from the start, do not show that where the motion has forgotten its start before. So a run is begun anew at each of
+which differ from the start, do not show that where the motion has forgotten its start before. So a run is restarted at each of
 its samples: what a piece does otherwise is made there, and grows no further. It is taken for a difference of rates, which goes
 on to the end. Where both runs are what the other description makes piece by piece, they obey the same laws, and what parts them
 is growth. What has gone wrong in one whole run alone, as a contact lost, shows in the piece where it happens.
@@ -57,7 +57,7 @@ def _piece(judge: Judge, run: Trajectory, tolerance: float, view: View | None, s
 def resumed(run: Trajectory, row: int, until: float) -> tuple[Scene, Array]:
     """The scene of a run from one of its rows on, and what its coordinates there are to be raised by to be those of the run.
 
-    A sliding body begins at zero anew, where its guide stands.
+    A sliding body starts again at zero, where its guide stands.
     """
     scene, q, u = run.scene, run.q[row], run.u[row]
     bodies, springs, begun = [], list(scene.springs), np.zeros(len(q))

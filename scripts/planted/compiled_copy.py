@@ -1,4 +1,4 @@
-"""Do compiled tests notice a fault, without everything being compiled anew?"""
+"""Do compiled tests notice a fault, without recompiling everything?"""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Which small faults can be planted in a source file?
 
 One at a time: a comparison turned round, an operator or function exchanged for its like, a sign lost, a number changed. What
-steers no computation is left alone: texts, annotations, imports, default documentation.
+steers no computation is not changed: texts, annotations, imports, default documentation.
 """
 
 from __future__ import annotations

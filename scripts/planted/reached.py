@@ -163,7 +163,7 @@ def recorded(tests: Sequence[str], longest: float = math.inf) -> Reached:
 
 
 def kept(path: Path, tests: Sequence[str], longest: float = math.inf) -> Reached:
-    """What was recorded in a file, and the test files that have changed since recorded anew."""
+    """What was recorded in a file, and the test files that have changed since recorded again."""
     files = sorted(
         {file for one in tests for file in ([ROOT / one] if one.endswith(".py") else (ROOT / one).rglob("test_*.py"))}
     )

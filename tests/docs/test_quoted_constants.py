@@ -76,7 +76,7 @@ QUOTED = [
     (METHOD, "all but sin²φ ≤ {} of it", tolerances.DEPENDENT_IN_STEPS),
     (METHOD, "({} at events, where rates", tolerances.DEPENDENT_AT_EVENTS),
     (METHOD, "a gap rate that is not rounding ({} of its terms)", tolerances.CONTRADICTING_RATE * tolerances.RATE_ROUNDING),
-    (METHOD, "by less than {} `speed_zero` is left alone", tolerances.SLIP_SLACK),
+    (METHOD, "by less than {} `speed_zero` is not corrected", tolerances.SLIP_SLACK),
     (METHOD, "account for, and beyond that by at most {} of itself", tolerances.EXPLAINED_SHARE),
     (METHOD, "or by that of {} `speed_zero`", tolerances.STOPPABLE_SPEED),
     (METHOD, "may not exceed {} of the energy turned over", tolerances.LEDGER_SHARE),

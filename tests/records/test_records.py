@@ -1,7 +1,7 @@
 """Does the program still say of many drawings, scenes and runs what it said before?
 
 What is kept holds on any machine. Where something moves for a reason, `python scripts/make_records.py` shows what and
-writes the records anew. That a number is right is for other tests to say.
+rewrites the records. That a number is right is for other tests to say.
 """
 
 from __future__ import annotations

@@ -88,7 +88,7 @@ def test_a_trajectory_with_pairs_in_words_comes_back(run, tmp_path):
 def test_an_existing_folder_is_left_alone_without_force(run, tmp_path):
     folder = write_results(run, tmp_path / "out", {"n": 1})
     before = snapshot(folder)
-    with pytest.raises(FileExistsError, match="exists already and is left alone"):
+    with pytest.raises(FileExistsError, match="already exists and was not changed"):
         write_results(run, folder, {"n": 2})
     with pytest.raises(FileExistsError):
         check_folder(folder)

@@ -422,7 +422,7 @@ one or two bodies are needed: between = ["lever", "wheel"], or ["lever"] for a s
 
 duration = "180 s" | duration = 180 s | duration = 180 s | \
 not valid TOML: Expected newline or end of document after a statement. \
-Texts and quantities stand in quotes; plain numbers (0.15), true, false and lists do not.
+Text and quantities need quotes; plain numbers (0.15), true, false and lists do not.
 duration = "180 s" | duration = "180 s | duration = "180 s | not valid TOML: Illegal character '\\n'. \
 A quotation mark is missing at the end of the line.
 [bodies.lever] | [bodies.wheel] | [bodies.wheel] | not valid TOML: Cannot declare ('bodies', 'wheel') twice. \

@@ -170,7 +170,7 @@ def test_another_scene_is_refused() -> None:
         simulate(scene, 0.1, 1e-7, start=first)
     assert first.end_state is not None
     older = dataclasses.replace(first.end_state, settings={**first.end_state.settings, "force_zero": 2e-9})
-    with pytest.raises(ValueError, match=r"another version of watchsim \(force_zero was 2e-09, now .*begin anew"):
+    with pytest.raises(ValueError, match=r"another version of watchsim \(force_zero was 2e-09, now .*start again"):
         simulate(scene, 0.1, start=older)
     with pytest.raises(ValueError, match=r"\(method was pfeiffer-glocker, now moreau\)"):
         simulate(scene, 0.1, start=first, method="moreau")

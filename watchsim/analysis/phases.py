@@ -151,7 +151,7 @@ def _face(pair: Pair, parts: Roles) -> str:
 
 STANDING = 1e-6  # of the wheel's advance in a beat: it has not moved
 NEAR_REST = 0.1  # of the wheel's advance in the beat: a free run that ends so near to rest may be the drop
-CATCHES_UP = 0.05  # of it: a shorter free run is a loss of contact amid the impulse
+CATCHES_UP = 0.05  # of it: a shorter free run is a loss of contact during the impulse
 
 
 class Marks(NamedTuple):

@@ -22,7 +22,7 @@ from watchsim.storage.columns import blocks
 # It hears noises only. From the first of a beat (the pin meets the fork, A) to the last loud one (a tooth meets the locking
 # face, C) the balance is taken to swing through the lift angle, so that the amplitude is λ / (2 sin(π f Δt)). In truth C
 # comes before the end of the lift, so that an instrument reads more than the true amplitude, which stands beside it in the
-# summary. It reads nothing where the swing hardly leaves the lift: the end of the noises then is not that of a beat.
+# summary. It reads nothing where the swing is barely larger than the lift angle: the noises then do not end with the beat.
 
 LOUD = 1.0 / 3.0  # of the energy of the beat's loudest noise; a tooth's rebounds from the stone are fainter
 LEAST = 1.5  # lift angles that the amplitude must be: instruments begin to show it at some 80°
@@ -64,7 +64,9 @@ def timegrapher(run: Trajectory, found: Beats, window: Window | None = None) -> 
 def _refused(lift: float, true: float | None, heard: Array) -> str | None:
     """Why an instrument could not determine the amplitude; `lift` and `true` in degrees."""
     if true is not None and true < LEAST * lift:
-        return f"it could not determine the amplitude: a swing of {true:.0f}° hardly leaves the lift of {lift:.4g}°"
+        return (
+            f"it could not determine the amplitude: a swing of {true:.0f}° is barely larger than the lift angle of {lift:.4g}°"
+        )
     heard = heard[np.isfinite(heard)]
     if np.std(heard) > UNEVEN * np.mean(heard):
         return "it could not determine the amplitude: the last loud noise comes at another time in each beat"

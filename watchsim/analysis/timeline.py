@@ -98,7 +98,7 @@ class Energies:
     stored      gain of kinetic energy, of springs, and of weights on turning bodies, such as a pendulum's
     to_balance  work of all contacts on the oscillator
     damping     taken by the air, by bearings
-    friction    taken at the contacts: what is left of the books
+    friction    dissipated at the contacts: the remainder of the energy balance
     impacts     by pair of bodies
     """
 
@@ -269,7 +269,7 @@ RESTING = ("locked", "recoil")  # and the last
 class Beat:
     """One beat: its phases in order, and of each what friction took by pair of bodies, J (empty where that was not asked for).
 
-    `residual`: what the books of the beat lack, J, friction as worked out from forces.
+    `residual`: what is missing from the energy balance of the beat, J, friction as worked out from forces.
     """
 
     stages: tuple[Stage, ...]

@@ -28,7 +28,7 @@ class Setup:
     units       length units per metre: engines have lengths of their own built in
     deviation   m, of chords from arcs
     iterations  of the contact solver: velocities, positions
-    slop        m of penetration that is left alone, where the engine lets one choose
+    slop        m of penetration that is not corrected, where the engine lets one choose
     ring        duration of a contact in steps, where contacts are springs
     """
 

@@ -312,7 +312,7 @@ def seconds_each(call: Callable[..., object], arguments: tuple[Any, ...], repeat
     return max(best[1] - best[0], 0.0) / repeats
 
 
-# They are posed anew at the events of a walk: those of the compression and the expansion at impacts, and of the modes
+# They are posed again at the events of a walk: those of the compression and the expansion at impacts, and of the modes
 # afterwards.
 
 POSED = {Kind.IMPACT: (COMPRESSION, EXPANSION, MODES), Kind.CHANGE: (MODES,)}

@@ -41,7 +41,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--swing",
         metavar="WAY",
-        help='with --turn: how far the oscillator is led to either side, such as "200°" (default: the start)',
+        help='with --turn: how far the oscillator is turned to each side, such as "200°" (default: the start)',
     )
     parser.add_argument("--movie", metavar="FILE", help="with --turn: where to write it as a movie, file.mp4 or file.gif")
 

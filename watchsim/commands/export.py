@@ -121,7 +121,7 @@ def _name(scene: Scene) -> str:
 
 
 def _check_folder(target: Path, force: bool) -> frozenset[str]:
-    """The names that an earlier export wrote there; FileExistsError where the folder must be left alone."""
+    """The names that an earlier export wrote there; FileExistsError where the folder must not be changed."""
     if not target.exists():
         return frozenset()
     if not target.is_dir():
@@ -131,9 +131,9 @@ def _check_folder(target: Path, force: bool) -> frozenset[str]:
     try:
         files = json.loads((target / MANIFEST).read_text(encoding="utf-8"))["files"]
     except (OSError, ValueError, KeyError, TypeError):
-        raise FileExistsError(f"{target} exists and holds no export; it is left alone. Choose another folder") from None
+        raise FileExistsError(f"{target} exists and holds no export; it was not changed. Choose another folder") from None
     if not force:
-        raise FileExistsError(f"{target} exists already and is left alone. Choose another folder, or replace it with --force")
+        raise FileExistsError(f"{target} already exists and was not changed. Choose another folder, or replace it with --force")
     return frozenset(str(name) for name in files)
 
 

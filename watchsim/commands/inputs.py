@@ -136,7 +136,7 @@ def start_from_drawings(names: Sequence[str], output: str | None, as_json: bool,
     if folder.is_file():
         raise FileExistsError(f"{folder} is a file; drawings and scene need a folder of their own")
     if not force and folder.is_dir() and next(folder.iterdir(), None) is not None:
-        raise FileExistsError(f"{folder} exists already and is left alone. Choose another folder, or replace with --force")
+        raise FileExistsError(f"{folder} already exists and was not changed. Choose another folder, or replace with --force")
     secured_folder(folder, "drawings and scene")
     try:
         found = propose(paths)

@@ -22,7 +22,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--kind",
         metavar="NAMES",
-        help="kinematics (default), phases, timeline (the mechanism amid each phase), phase-portrait, torque (on the balance), "
+        help="kinematics (default), phases, timeline (the mechanism in each phase), phase-portrait, torque (on the balance), "
         f"forces (at contacts and bearings), energy, timing, tape, with commas; {ALL}: every one that the run has",
     )
     parser.add_argument(

@@ -62,7 +62,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--workers", metavar="N", type=int, help="processes (default: as many as there are processors)")
     parser.add_argument("--scheduler", metavar="ADDRESS", help="of dask.distributed, such as tcp://127.0.0.1:8786")
     parser.add_argument("--resume", action="store_true", help="go on with what the results folder holds")
-    parser.add_argument("--force", action="store_true", help="begin anew in a results folder that exists")
+    parser.add_argument("--force", action="store_true", help="replace the study in a results folder that exists")
     parser.add_argument("--no-plots", action="store_true", help="write no plots")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
 
@@ -206,7 +206,7 @@ def study_folder(args: argparse.Namespace, scene: Scene, what: str, held: contex
     secured_folder(folder, "results", default=not args.output)
     if folder.is_dir() and any(folder.iterdir()) and not (args.resume or args.force):
         raise InputError(
-            f"{folder} exists already. Go on with it (--resume), begin anew in it (--force), or choose another folder (-o)."
+            f"{folder} already exists. Continue it (--resume), replace it (--force), or choose another folder (-o)."
         )
     folder.mkdir(exist_ok=True)
     held.enter_context(claimed(folder))

@@ -42,7 +42,7 @@ class Goal:
     folder: Path
     replace: bool
     scene: Mapping[str, str | bytes]  # name in the results folder -> content
-    keeps_later: bool = False  # movies, plots, pages made of the earlier results stay where they are not made anew
+    keeps_later: bool = False  # movies, plots, pages made of the earlier results stay where they are not made again
 
 
 def goal_of(scene: Scene, folder: Path, replace: bool, keeps_later: bool = False) -> Goal:
@@ -151,7 +151,7 @@ def _save(run: Trajectory, goal: Goal, numbers: Mapping[str, Any], beside: dict[
 
     keep = sorted(set(pictures_in(goal.folder)) - set(drawn)) if goal.keeps_later else []
     if keep:
-        say(f"{', '.join(keep)} in {goal.folder}: kept, of the run's earlier end. --force removes what is not made anew.")
+        say(f"{', '.join(keep)} in {goal.folder}: kept, of the run's earlier end. --force removes what is not made again.")
     try:
         write_results(run, goal.folder, numbers, str(beside[LOCK]), extra={**beside, **drawn}, force=goal.replace, keep=keep)
     except OSError as error:

@@ -28,7 +28,12 @@ class CycloidalPair:
     tooth: float = dim(1.57, "", 1.0, 1.8, "width of the wheel's teeth on the pitch circle, in modules", HALF)
     leaf: float = dim(1.05, "", 0.7, 1.5, "width of the leaves on the pitch circle, in modules", "a third of a pitch")
     ogive: float = dim(
-        1.333, "", 1.0, 3.0, "radius of the leaves' rounding by that of a round top", "1: round tops, above: ogives (BS 978-2)"
+        1.333,
+        "",
+        1.0,
+        3.0,
+        "radius of the leaves' rounding divided by that of a round top",
+        "1: round tops, above: ogives (BS 978-2)",
     )
     spread: float = dim(
         0.0, "", -0.05, 0.2, "by which the centres are further apart than the pitch circles, in modules", CHOSEN

@@ -143,7 +143,7 @@ NIB, FOOT = 0.22, 0.57  # length of a nib inside the circle of the points, and t
 NEAR, FAR = 0.19, 0.45  # of the arm from the line through the nib, its near and far edge
 PIN = 0.16  # radius of a stop; all by the pitch on the circle of the points
 HELD = 0.55  # of a pallet's length: where its stop stands
-ARMS, RIM, HUB = 5, 0.86, 0.16  # of the wheel: number of arms; radii by that of the points
+ARMS, RIM, HUB = 5, 0.86, 0.16  # of the wheel: number of arms; radii divided by that of the points
 
 
 def wheel(at: Points) -> list[Loop]:

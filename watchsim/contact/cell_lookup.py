@@ -11,7 +11,7 @@ UNKNOWN, LISTED, ALL = -1, 0, 1
 MARGIN = 0.5  # a cell's answer holds this share of its size beyond its faces
 # Of their reach: bodies that are this much further apart need no cells, or, where they have none, no look at their contacts.
 APART, APART_WITHOUT_CELLS = 0.25, 1e-3
-STRIDE_WITHOUT_CELLS = 0.25  # of their reach: bodies that pass each other are looked at anew when they have moved so far
+STRIDE_WITHOUT_CELLS = 0.25  # of their reach: bodies that pass each other are examined again when they have moved so far
 FEW_CONTACTS = 24  # with no more reachable pairs of primitives than this, a search costs more than it saves
 REACH = 1 << 16  # cell indices beyond it fall back to all that can touch
 

@@ -1,7 +1,7 @@
 """Which contacts are candidates in each cell of two bodies' configuration space?
 
 Looked up once (broad_phase.py), together with the cells ahead, on the way that the bodies move. What is found holds as well
-for every part of a turn by which an outline comes back onto itself, and for later runs with the same geometry.
+for every turn that maps an outline onto itself, and for later runs with the same geometry.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from watchsim.model import ARC, CORNER, FIXED, FULL, NO_KEY, PIVOT, SLIDE, Cells
 
 # Into which cells is the configuration space of two bodies divided?
 #
-# Cells are sized by how far a point travels in one. An outline that comes back onto itself within a turn gets as many cells
+# Cells are sized by how far a point travels in one. An outline with rotational symmetry gets as many cells
 # for each such part, so that they can be shared (symmetry.py).
 
 # A cell lets the outermost point of either body travel this share of the larger one's reach: the first where outlines are made
@@ -76,7 +76,7 @@ def choose_cells(bodies: Records, primitives: Records, contacts: Records, pairs:
             fold = 1 if slides else AlikeContacts(primitives, contacts, pair, ids, b).fold
             fold = fold if parts * fold <= MOST_PARTS else 1
             parts *= fold
-            # Only a body's own angle, the last of its axes, brings its outline back onto itself, and only there is it geared.
+            # Only a body's own angle, the last of its axes, maps its outline onto itself, and only there is it geared.
             cells += [_cells(axis, travel, reach[b]) for axis in axes[b][:-1]]
             cells.append(_cells(axes[b][-1], travel, reach[b], fold, seen.ratio))
         pair.axes, pair.listed = len(cells), 1

@@ -1,4 +1,4 @@
-"""Which contacts are alike when a body has turned by a part of a turn that brings its outline back onto itself?"""
+"""Which contacts are alike after a turn under which a body's outline is symmetric?"""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from watchsim.contact.cell_frames import chords, named_rows
 from watchsim.model import CORNER, PRIMITIVE, Records, frozen
 
-# By which part of a turn does an outline come back onto itself?
+# What is the fold of an outline's rotational symmetry?
 #
 # A wheel's teeth are alike: what is known about one of them is known about all. The symmetry is found in the outline; how far
 # it fails, by the rounding of the drawing, is measured and has to be allowed for.

@@ -164,7 +164,7 @@ def closed_runs(strokes: Sequence[Stroke]) -> tuple[list[list[Stroke]], list[Str
 
 
 def folded(run: Sequence[Stroke]) -> bool:
-    """Does the run go along one of its edges twice? Then it has slits, which are found by chaining its edges anew."""
+    """Does the run go along one of its edges twice? Then it has slits, which are found by chaining its edges again."""
     if len(run) < 3:
         return len(run) == 2 and all(isinstance(stroke.edge, Line) for stroke in run)
     middles = {}

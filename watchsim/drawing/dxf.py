@@ -216,7 +216,7 @@ def swallowed(record: Record, following: Record | None, layer: str) -> list[Find
         return strange_groups(record, layer)
     if record.kind not in READERS and record.codes.count(8) > 1:
         message = f"{record.name} at {record.place} names two layers: the entity behind it seems to have been swallowed"
-        return [Finding("damaged", "error", message, "Draw again what is missing there, or export anew.")]
+        return [Finding("damaged", "error", message, "Draw again what is missing there, or export it again.")]
     announced = record.kind == "INSERT" and record.text(66, "0") not in ("0", "")
     if announced and (following is None or following.kind != "ATTRIB"):
         message = f"{record.name} at {record.place} announces attributes (group 66) and none follow: it may be damaged"

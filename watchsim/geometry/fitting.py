@@ -393,7 +393,7 @@ def bounds(bundle: Bundle, trial: Trial, chosen: NDArray[np.bool_]) -> Array:
 
 
 KINK = 1e-6  # radians between a single arc's and the curve's tangent at its end
-ROUNDS = 20  # of distributing the arcs anew
+ROUNDS = 20  # of redistributing the arcs
 ROUNDS_OF_HALVES = 6  # where the whole did not succeed
 AT_ONCE = 1024  # curves: so many that single steps cost little, so few that the numbers stay near the processor
 MANY_SPANS = 4000  # spans: where more wait, the search for the fewest arcs stops a little sooner

@@ -19,7 +19,7 @@ from watchsim.simulation.trajectory import Array, Trajectory
 from watchsim.units import signed
 
 WIDTH, HEIGHT = 560.0, 230.0
-LEFT, RIGHT, TOP, BOTTOM = 88.0, 12.0, 12.0, 44.0  # of the large letters on a telephone five fit between label and axis
+LEFT, RIGHT, TOP, BOTTOM = 88.0, 12.0, 12.0, 44.0  # of the large letters on a phone five fit between label and axis
 DOT = 2.4
 MOST_DOTS = 1200  # dots of one series
 

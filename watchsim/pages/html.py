@@ -72,7 +72,7 @@ def table(head: Iterable[Content], rows: Iterable[Iterable[Content]], caption: s
         body.append(element("tr", element("th", first, scope="row"), *(element("td", cell) for cell in rest)))
     kind = "numbers" if numeric else None
     parts = (element("caption", caption), element("thead", header), element("tbody", *body))
-    # What is wider than a telephone is scrolled in its own frame, by keyboard too.
+    # What is wider than a phone is scrolled in its own frame, by keyboard too.
     return element("div", element("table", *parts, class_=kind), class_="scroll", tabindex=0, role="region", aria_label=caption)
 
 

@@ -104,7 +104,7 @@ def _motion(run: Trajectory, window: Sequence[float] | None) -> tuple[Window, li
 
 
 def _opening(found: list[Phase], span: Window) -> float:
-    """The instant that the page opens with: amid an impulse where there is one."""
+    """The instant that the page opens with: in the middle of an impulse where there is one."""
     inside = [one for one in found if one.name == "impulse" and span[0] <= one.start and one.end <= span[1]]
     return 0.5 * (inside[-1].start + inside[-1].end) if inside else span[0]
 

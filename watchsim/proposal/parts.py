@@ -201,7 +201,7 @@ def _is_wheel(part: Part) -> bool:
 
 
 def teeth_of(part: Part) -> int:
-    """How often the part's outermost toothed piece comes back onto itself in a turn; 0 where none does."""
+    """The fold of the rotational symmetry of the part's outermost toothed piece; 0 without one."""
     toothed = [piece.turned for piece in part.pieces if piece.turned is not None and is_toothed(piece.turned)]
     centre = part.centre
     about = [one for one in toothed if centre is not None and math.dist(one.centre, centre.at) <= 1e-2 * one.outer]
@@ -219,7 +219,7 @@ def call_wheel(parts: Sequence[Part]) -> None:
     if free:
         wheel = max(free, key=teeth_of)
         wheel.kind = WHEEL
-        wheel.why.append(f"it comes back onto itself {teeth_of(wheel)} times in a turn, and nothing else is a wheel")
+        wheel.why.append(f"it has {teeth_of(wheel)}-fold rotational symmetry, and nothing else is a wheel")
 
 
 def parts_of(sources: Sequence[Source], pieces: Sequence[Piece]) -> list[Part]:
@@ -426,7 +426,7 @@ def nose_of(part: Part, wheel: Part) -> Nose:
 
 
 def toothing(wheel: Part) -> Turned | None:
-    """What comes back onto itself as the wheel turns, be it a wheel of many teeth or a star of a few."""
+    """What has rotational symmetry, be it a wheel of many teeth or a star of a few."""
     return max((piece.turned for piece in wheel.pieces if piece.turned is not None), key=lambda one: one.outer, default=None)
 
 

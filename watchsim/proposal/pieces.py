@@ -408,7 +408,7 @@ def centre_of(piece: Piece, marks: Sequence[Mark]) -> Centre | None:
     if symmetry is not None and is_toothed(symmetry):
         mark = next((one for one in marks if math.dist(one.at, symmetry.centre) <= SAME), None)
         at = symmetry.centre if mark is None else mark.at
-        return Centre(at, SURE, f"the outline comes back onto itself {symmetry.fold} times in a turn about it", mark)
+        return Centre(at, SURE, f"the outline has {symmetry.fold}-fold rotational symmetry about it", mark)
     inside = [mark for mark in marks if holds(piece, mark.at)]
     if len(inside) == 1:
         why = f"the one point of layer {inside[0].layer} that lies in its outline"

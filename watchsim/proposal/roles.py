@@ -122,7 +122,7 @@ def roles_of(parts: Sequence[Part]) -> list[Role]:
     rest = [part for part in moving if part not in wheels]
     for part in wheels:
         count = teeth_of(part)
-        found.append(Role(part, "", WHEEL, f"it comes back onto itself {count} times in a turn", count))
+        found.append(Role(part, "", WHEEL, f"it has {count}-fold rotational symmetry", count))
     found += [Role(part, "", WHEEL, BY_NAME) for part in rest if part.kind == WHEEL]
     rest = [part for part in rest if part.kind != WHEEL]
     for part in list(rest):

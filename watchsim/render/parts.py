@@ -40,7 +40,7 @@ def pose_matrix(frame: Array) -> Array:
     return np.array([[c, -s, x], [s, c, y], [0.0, 0.0, 1.0]])
 
 
-# A patch of matplotlib works its look out anew whenever it is drawn, which for small shapes costs more than the shape itself.
+# A patch of matplotlib recomputes its look whenever it is drawn, which for small shapes costs more than the shape itself.
 
 
 class LastingPatch(PathPatch):

@@ -1,7 +1,7 @@
 """How are the phases of a beat shown: bands behind the curves, their names, and the mechanism at their key instants?
 
 plot_phases(run).savefig("phases.pdf") draws wheel, lever and balance through the phases: angles and angular velocities.
-plot_timeline(run).savefig("timeline.pdf") draws the mechanism amid each phase, over the angles of lever and balance.
+plot_timeline(run).savefig("timeline.pdf") draws the mechanism during each phase, over the angles of lever and balance.
 """
 
 from __future__ import annotations
@@ -216,7 +216,7 @@ class Instant:
 def plot_timeline(
     run: Trajectory, window: Sequence[float] | None = None, width: float = style.FULL, beats: list[Beat] | None = None
 ) -> Figure:
-    """The last two beats of a window: the mechanism around the lever amid each phase, with the contact forces on the lever,
+    """The last two beats of a window: the mechanism around the lever during each phase, with the contact forces on the lever,
     above the angles of lever and balance in those phases.
 
     ValueError where no beat was recorded whole.

@@ -209,9 +209,9 @@ def check_folder(folder: str | os.PathLike[str], force: bool = False) -> Path:
         raise FileExistsError(f"{folder} is a file; results need a folder of their own")
     empty = all(item.name.startswith(PREFIX) for item in target.iterdir())
     if not (empty or (target / SUMMARY).is_file() or (target / TRAJECTORY).is_file()):
-        raise FileExistsError(f"{folder} exists and holds no results of a run; it is left alone. Choose another folder")
+        raise FileExistsError(f"{folder} exists and holds no results of a run; it was not changed. Choose another folder")
     if not (empty or force):
-        raise FileExistsError(f"{folder} exists already and is left alone. Choose another folder, or replace it with --force")
+        raise FileExistsError(f"{folder} already exists and was not changed. Choose another folder, or replace it with --force")
     return target
 
 
@@ -249,7 +249,7 @@ def write_results(
     extra       more files: relative path -> text, bytes, or a function that writes the file it is given; so for
                 trajectory.npz and events.csv where they were begun before (`Packed`, `tables.EventLines`)
     force       replace an existing results folder; files in it that are not ours are kept
-    keep        files of the existing folder that are ours, and are kept nevertheless where they are not written anew
+    keep        files of the existing folder that are ours, and are kept nevertheless where they are not rewritten
 
     FileExistsError as from `check_folder`; OSError where the disk is full or the place not writable: what was there before
     is then still there, and nothing else.
@@ -265,7 +265,7 @@ def write_results(
 class Packed:
     """trajectory.npz in the making: packed in a thread, which needs another core and no Python, into a file without a name.
 
-    `write` puts it where it belongs, as `extra` of `write_results` asks for; where the thread could not, it is packed anew.
+    `write` puts it where it belongs, as `extra` of `write_results` asks for; where the thread could not, it is packed again.
     """
 
     def __init__(self, run: Trajectory, folder: Path) -> None:

@@ -106,7 +106,7 @@ class EventLines:
         return self._begun
 
     def write(self, run: Trajectory, path: Path) -> None:
-        """Write the table of a run: what was begun, once it is settled, or anew where that failed."""
+        """Write the table of a run: what was begun, once it is settled, or again where that failed."""
         if self._begun and self._settled and not self._settled.exception():
             give_name(self._begun, path)
             return

@@ -29,7 +29,7 @@ from watchsim.scene.values import Table, shortened, shown, understood
 
 # How does the mapping of a scene file become a scene, and what does it become with some of its keys changed?
 #
-# A scene carries the reader that made it (`Scene.reader`), so that `Scene.set` reads it anew without knowing this file.
+# A scene carries the reader that made it (`Scene.reader`), so that `Scene.set` reads it again without knowing this file.
 
 FAR_OFF = 0.1  # of the frequency of small swings: what a rate may be measured against
 
@@ -181,7 +181,7 @@ def _literal(text: str, value: str) -> object:
 
 # How does a scene file become a scene?
 
-QUOTES = "Texts and quantities stand in quotes; plain numbers (0.15), true, false and lists do not"
+QUOTES = "Text and quantities need quotes; plain numbers (0.15), true, false and lists do not"
 CURES = {  # what the TOML reader complains of -> what is mostly amiss
     "Cannot declare": "This table is there already: give it another name, or make one of both",
     "Cannot overwrite": "This key has a value already: leave one of them out",

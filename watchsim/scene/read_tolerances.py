@@ -316,7 +316,7 @@ def matrix(tolerances: Sequence[Tolerance], correlated: Sequence[Correlation]) -
     return whole, float(np.linalg.eigvalsh(whole)[0]) if len(whole) else 1.0
 
 
-# Which tolerances are usual in the trade? By kind of dimension, for scenes that are started anew.
+# Which tolerances are usual in the trade? By kind of dimension, for new scenes.
 
 GRADE_4 = "1.5 µm either side: grade 4 of ISO 286-1 up to 3 mm; escape wheels by lithography keep 1 µm (grand-seiko.com, 9S)"
 GRADE_7 = "5 µm either side: grade 7 of ISO 286-1 up to 3 mm"

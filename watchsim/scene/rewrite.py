@@ -1,6 +1,6 @@
 """How is a scene file written again with some of its values changed, comments and order kept?
 
-Each value is replaced on its line. What is read back must be what was intended; where that fails the scene is written anew,
+Each value is replaced on its line. What is read back must be what was intended; where that fails the scene is rewritten,
 without comments.
 """
 

@@ -332,7 +332,7 @@ class Scene:
     path, source    the file, and the TOML mapping that it holds
     findings        what the drawings said besides errors; `drawings` the files as they were read, by their names in the scene
     written         of a scene made from a design: `source` then holds the design's scene as well
-    reader          reader(scene, {key: value}) reads `source` anew with keys changed; None for a scene made in Python
+    reader          reader(scene, {key: value}) reads `source` again with keys changed; None for a scene made in Python
     """
 
     title: str

@@ -270,7 +270,7 @@ def _scale_of(G, row, independent):
     return unit_scale(own) if row == normal else SLIP_WEIGHT * unit_scale(own)
 
 
-# Which bodies stand still on their contacts, and may be left alone until something touches them?
+# Which bodies stand still on their contacts, and may be skipped until something touches them?
 
 
 @kernel

@@ -516,7 +516,7 @@ def crossing(model, active, in_force, options, k, span, step, path, out_counts):
                 if may_last(room, rate, safe):
                     safe = max(safe, time_apart(model, k, room, end - tau, tau, step, path))
             safe = max(safe, time_immovable(model, options, k, rate, bend, path) if near and not leaving else 0.0)
-            # Beside its primitives the gap may pass through zero: which side it is on afterwards is found anew.
+            # Beside its primitives the gap may pass through zero: which side it is on afterwards is determined again.
             fresh = beside > safe
             # Never less than the rounding of time itself.
             tau += beside if fresh else max(safe, TIME_ROUNDING * tau)

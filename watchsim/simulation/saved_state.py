@@ -73,7 +73,7 @@ class SavedState:
         if self.digest != model_digest(compiled):
             raise ValueError(
                 "the saved state belongs to another scene: bodies, outlines, forces, contacts or start values have changed "
-                "since. Go on with the scene as it was (scene.lock.toml in the results folder), or begin anew"
+                "since. Go on with the scene as it was (scene.lock.toml in the results folder), or start again"
             )
         changed = [name for name in {**self.settings, **settings} if self.settings.get(name) != settings.get(name)]
         if not changed:
@@ -84,8 +84,8 @@ class SavedState:
         )
         if not requested:
             # They follow from what is requested and from the scene, both of which are the same.
-            raise ValueError(f"the saved state was written by another version of watchsim ({changes}); begin anew")
-        raise ValueError(f"the saved state was made with other settings ({changes}). Use the same ones, or begin anew")
+            raise ValueError(f"the saved state was written by another version of watchsim ({changes}); start again")
+        raise ValueError(f"the saved state was made with other settings ({changes}). Use the same ones, or start again")
 
     def restore(self, arrays: Mapping[str, NDArray[Any]]) -> None:
         """Write the state into `arrays`; ValueError where another version of the package has saved it."""
@@ -93,7 +93,7 @@ class SavedState:
         shapes = {name: array.shape for name, array in own.items()}
         row = self.recorded.get("row", np.zeros(0)).shape in ((0,), (1 + 3 * len(arrays["q"]),))
         if shapes != {name: array.shape for name, array in arrays.items()} or not row:
-            raise ValueError("the saved state was written by another version of watchsim; begin anew")
+            raise ValueError("the saved state was written by another version of watchsim; start again")
         for name, array in arrays.items():
             array[...] = own[name]
 

@@ -79,7 +79,7 @@ def late_means(run: Trajectory) -> Averages:
 
 DOWN, UP = 16.0, 4.0  # times the amplitude that is known: how far the map is looked at
 RATIO = 1.08  # from sample to sample
-BEYOND = 3  # samples in a row where the mechanism does not work: larger swings are left alone
+BEYOND = 3  # samples in a row where the mechanism does not work: larger swings are not examined
 EXACT = 1e-12  # of the amplitude: how closely a cycle is looked for
 EDGE = 1e-5  # of the amplitude: how closely the end of regular work is looked for
 ROOT = 1e-7  # of the amplitude: more left than that, and it is no cycle but a jump of the map

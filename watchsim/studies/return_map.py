@@ -211,7 +211,7 @@ def fixed_point(oscillate: Callable[[float], Return], start: float) -> Fixed | L
     return best if abs(best.residual) <= ENOUGH * start else Lost(here, UNSETTLED, g_old > 0.0)
 
 
-# An orbit is followed without taking it up anew, and its turning points are compared with those 1, 2, 3, … oscillations
+# An orbit is followed without restarting it, and its turning points are compared with those 1, 2, 3, … oscillations
 # before.
 
 FOLLOWED = 64  # oscillations

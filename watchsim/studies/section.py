@@ -341,7 +341,7 @@ def section_from(loop: Loop, parts: Parts, turning: State) -> Section | None:
     state.clock.time = 0.0
     state.u[i] = 0.0
     state.side_u[i], state.side_q[i] = -side, side
-    # Which way dry friction in its bearing acts is decided anew.
+    # Which way dry friction in its bearing acts is decided again.
     state.instant.event_waits, state.instant.touched = 1, NO_CONTACT
     anew = arrays_of(state)
     anew.sums[:], anew.counts[:], anew.worst[:] = 0.0, 0, 0.0

@@ -25,7 +25,7 @@ CONFIDENCE = 0.95
 FEW = 12  # failing or good samples, below which replications scatter too irregularly
 CHEAP = 1 << 16  # watches of the linear prediction, to know its yield
 SOUGHT = 60  # steps to the most probable failure
-FARTHEST = 7.0  # sigmas: failures that lie farther off are left alone
+FARTHEST = 7.0  # sigmas: failures farther off are ignored
 
 
 @dataclass(frozen=True)

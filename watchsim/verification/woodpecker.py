@@ -253,7 +253,7 @@ def _within(phase: Phase, row: int, z: Array, length: float) -> float | None:
     if value(0.0) <= 0.0:
         return 0.0
     root = _root(value, 0.0, length)
-    # Forces end a mode late: who decides anew must see them beyond their bound. Gaps and slips end it exactly.
+    # Forces end a mode late: who decides again must see them beyond their bound. Gaps and slips end it exactly.
     if phase.causes[row][0] in ("impact", "reverse") and value(0.0) > slack:
         root = _root(lambda t: value(t) - slack, 0.0, root)
     return root

@@ -6,7 +6,7 @@ class Names {
 
   get any() { return this.all.length > 0; }
 
-  // Where each name, its line and its place are now; the order of the columns is found anew unless `kept`.
+  // Where each name, its line and its place are now; the order of the columns is determined again unless `kept`.
   placed(ctx, view, poses, look, kept) {
     ctx.font = `600 12.5px ${look.font}`;
     const found = this.all.map((one) => {

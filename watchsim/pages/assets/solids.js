@@ -76,7 +76,7 @@ class Solids {
     return true;
   }
 
-  // Vertices and triangles on the card; drawn anew each frame where they bend.
+  // Vertices and triangles on the card; redrawn each frame where they bend.
   shape(points, normals, pointKind, normalKind, faces) {
     const { gl } = this, array = gl.createVertexArray(), stores = [gl.createBuffer(), gl.createBuffer(), gl.createBuffer()];
     gl.bindVertexArray(array);
