@@ -109,7 +109,12 @@ def compare(*sources: Scene | Trajectory | Side | str | Path) -> Comparison:
     nothing = (None, None)
     outputs = {name: Outcome(*zip(*(side.outputs.get(name, nothing) for side in sides), strict=True)) for name in names}
     outputs["verdict"] = Outcome(tuple(side.verdict for side in sides), (None,) * len(sides))
-    return Comparison(sides, _changed([side.scene for side in sides]), outputs)
+    changed = _changed([side.scene for side in sides])
+    lengths = tuple(f"{side.run.simulated:.9g} s" for side in sides if side.run is not None)
+    if len(lengths) == len(sides):  # of runs those count that were simulated
+        changed.pop("run.duration", None)
+        changed |= {"run.duration": lengths} if len(set(lengths)) > 1 else {}
+    return Comparison(sides, changed, outputs)
 
 
 def side_of(source: Scene | Trajectory | Side | str | Path) -> Side:
