@@ -245,7 +245,6 @@ def test_expectations_of_another_run_are_not_judged(tmp_path: Path, capsys: pyte
         ("", "is a folder"),
         ("in.dxf", "must end in .png"),
         ("x.txt", "must end in .png"),
-        ("none/x.png", "there is no folder"),
         ("same.png", "is the input itself"),
     ],
 )
@@ -260,6 +259,11 @@ def test_a_picture_goes_nowhere_else(
     told = capsys.readouterr().err
     assert words in told and "Errno" not in told
     assert source.read_bytes() == before and sorted(path.name for path in tmp_path.iterdir()) == ["in.dxf", "same.png"]
+
+
+def test_a_picture_makes_the_folders_above_it(tmp_path: Path) -> None:
+    assert main(["inspect", str(LEVER.parent / "wheel.dxf"), "--png", str(tmp_path / "none" / "x.png")]) == 0
+    assert (tmp_path / "none" / "x.png").is_file()
 
 
 @pytest.mark.parametrize("command", [["bench", "--quick", "--scene", "incline"], ["verify"]])

@@ -181,7 +181,10 @@ def check_picture(target: str, source: str) -> None:
         raise InputError(f"--png {target}: the picture is a PNG, so its name must end in .png.")
     if path.resolve() == Path(source).resolve():
         raise InputError(f"--png {target}: is the input itself, which would be lost. Choose another name.")
-    path.parent.mkdir(parents=True, exist_ok=True)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"--png {target}: the folder {path.parent} cannot be made: {error.strerror}.") from error
 
 
 def parse_width(text: str) -> float:
