@@ -38,7 +38,7 @@ def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return place
 
 
-@pytest.mark.parametrize("name", ["none/out", "file/out", "dangling", "x" * 256])
+@pytest.mark.parametrize("name", ["file/out", "dangling", "x" * 256])
 def test_nothing_is_simulated_for_a_place_that_cannot_be_written(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
