@@ -23,7 +23,7 @@ def test_writes_a_scene_that_loads(tmp_path, capsys):
     assert main(["check", str(folder)]) == 0
     capsys.readouterr()
     assert main(["new", "swiss_lever", "-o", str(folder)]) == 2
-    assert "left alone" in capsys.readouterr().err
+    assert "was not changed" in capsys.readouterr().err
     assert main(["new", "swiss_lever", "-o", str(folder), "--force", "--json"]) == 0
     told = json.loads(capsys.readouterr().out)
     assert told["dimensions"]["lock"] == "1.5°"

@@ -140,7 +140,7 @@ def test_a_folder_that_exists_is_left_alone(tmp_path):
     mine = designs.swiss_lever()
     (tmp_path / "lever").mkdir()
     (tmp_path / "lever" / "note.txt").write_text("mine")
-    with pytest.raises(FileExistsError, match="left alone"):
+    with pytest.raises(FileExistsError, match="was not changed"):
         mine.write(tmp_path / "lever")
     mine.write(tmp_path / "lever", force=True)
     assert (tmp_path / "lever" / "note.txt").read_text() == "mine"
