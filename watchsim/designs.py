@@ -49,7 +49,9 @@ class Drawn:
     def files(self) -> dict[str, bytes]:
         """Name -> content of everything that `write` writes."""
         drawings = {f"{name}.dxf": sheet.dxf() for name, sheet in self.sheets.items()}
-        return {**drawings, SCENE: (self.design.scene(self.values) + usual(self.scene())).encode()}
+        known = self.design.name in registry.names()  # a design that is still being written has no scene of its name
+        tolerances = usual(self.scene()) if known else ""
+        return {**drawings, SCENE: (self.design.scene(self.values) + tolerances).encode()}
 
     def scene(self) -> Scene:
         """The scene, ready to be simulated; its dimensions can be changed: scene.set("design.lock", "2°")."""

@@ -79,7 +79,7 @@ def test_the_paper_of_a_run(knocking: Path, tmp_path: Path, capsys: pytest.Captu
         (["--duration", "13 h"], "up to 12 hours"),
         (["--duration", "60"], "needs a unit"),
         (["-o", "tick.mp3"], "ends in .wav"),
-        (["-o", "/nowhere/tick.wav"], "/nowhere"),
+        (["-o", "/dev/null/tick.wav"], "/dev/null"),
     ],
 )
 def test_what_no_sound_can_be_is_refused(extra, why, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

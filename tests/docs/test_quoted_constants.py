@@ -66,7 +66,7 @@ QUOTED = [
     (METHOD, "Lemke on {} other paths", solver_fallbacks.PATHS),
     (METHOD, "(up to {} sets)", solver_fallbacks.MODES),
     (METHOD, "missed by more than {} of the driving load", tolerances.LCP_ROUGH),
-    (METHOD, "below `accumulation_time` ({} s)", tolerances.ACCUMULATION_TIME),
+    (METHOD, "below `accumulation_time` ({} of the scene's unit", tolerances.ACCUMULATION_TIME),
     (METHOD, "rises by no more than {} `gap_zero`", tolerances.HIDDEN_REBOUND),
     (METHOD, "`gap_zero` ({} of the scene's size)", tolerances.HIDDEN_REBOUND * tolerances.GAP_ZERO),
     (METHOD, "has just taken or {} of the kinetic energy", tolerances.CHATTER_BACK),

@@ -32,7 +32,7 @@ PAIRS = (PairCount(("wheel", "lever"), 120, 17, 3, 5, 2),)
 
 def test_report(desk):
     report = check_report(load(desk.scene()), PAIRS)
-    assert set(report) == {"bodies", "theory", "pairs", "statics", "findings"}
+    assert set(report) == {"bodies", "theory", "pairs", "statics", "tolerances", "findings"}
     assert report["bodies"]["lever"] == {
         "mass_kg": 0.0,
         "inertia_kg_m2": pytest.approx(3e-12),

@@ -22,7 +22,7 @@ from watchsim.geometry.primitives import TURN, Arc, Line
 from watchsim.mechanism.check import modelled_pairs
 from watchsim.mechanism.compile import compile_scene
 from watchsim.model import LINE as LINE_of_still
-from watchsim.render import still as module
+from watchsim.render import stage as module
 from watchsim.render.drawing_picture import (
     CIRCLED,
     COLOURS,
@@ -225,7 +225,7 @@ def test_reachable_edges_wear_colour_and_others_do_not(tmp_path):
     pairs = modelled_pairs(compiled, [body.name for body in scene.bodies])
     module.still(scene, tmp_path / "start.png", compiled, pairs)
     picture = imageio.imread(tmp_path / "start.png").astype(float) / 255.0
-    view = Stage(module.at_rest(scene, compiled), module.SIZE, (0.0, 1.0)).view
+    view = Stage(module.at_rest(scene, compiled), module.STILL_SIZE, (0.0, 1.0)).view
     rows = {"never": [], "reachable": [], "candidate": []}
     for number, body in enumerate(scene.bodies):
         matrix = view.matrix(view.centre) @ pose_matrix(np.array([*body.position, body.angle]))
@@ -235,7 +235,7 @@ def test_reachable_edges_wear_colour_and_others_do_not(tmp_path):
             middle = (primitive.x + 0.5 * primitive.length * primitive.tx, primitive.y + 0.5 * primitive.length * primitive.ty)
             x, y, _ = matrix @ (*middle, 1.0)
             kind = "candidate" if i in pairs.candidates else "reachable" if i in pairs.reachable else "never"
-            rows[kind].append(picture[module.SIZE[1] - 1 - round(y), round(x)])
+            rows[kind].append(picture[module.STILL_SIZE[1] - 1 - round(y), round(x)])
     wanted = {"reachable": module.REACHABLE, "candidate": module.CANDIDATE}
     for kind, colour in wanted.items():
         off = np.abs(np.array(rows[kind]) - to_rgb(colour)).max(axis=1)

@@ -25,7 +25,7 @@ from watchsim.render.movie import frame, movie
 from watchsim.render.palette import BLUED, BRASS, FIXED, LIGHT
 from watchsim.render.parts import backdrop, parts, working
 from watchsim.render.patches import stop_pins
-from watchsim.render.stage import NOTHING, Stage
+from watchsim.render.stage import Extras, Stage
 from watchsim.render.view import (
     COILS,
     WIDTH,
@@ -260,11 +260,11 @@ def test_the_spring_is_seen_and_moves() -> None:
 
 
 def test_a_picture_takes_the_shape_of_its_mechanism() -> None:
-    tall, turn = fitting(watch_run(), WINDOW, NOTHING, None, False, None)
+    tall, turn = fitting(watch_run(), WINDOW, Extras(), None, False, None)
     assert tall == (720, 1280) and turn == 0.0
-    assert fitting(watch_run(), WINDOW, NOTHING, None, False, math.pi / 2)[0] == (1280, 720)
-    assert fitting(watch_run(), WINDOW, NOTHING, ["wheel"], False, None)[0] in (FORMATS[1], FORMATS[2])
-    assert fitting(disc_run(), (0.0, 3.0), NOTHING, None, False, None) == ((1280, 720), None)
+    assert fitting(watch_run(), WINDOW, Extras(), None, False, math.pi / 2)[0] == (1280, 720)
+    assert fitting(watch_run(), WINDOW, Extras(), ["wheel"], False, None)[0] in (FORMATS[1], FORMATS[2])
+    assert fitting(disc_run(), (0.0, 3.0), Extras(), None, False, None) == ((1280, 720), None)
     picture = frame(watch_run(), 0.5, "auto")
     assert picture.shape == (1280, 720, 3)
 

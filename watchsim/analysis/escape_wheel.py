@@ -66,6 +66,8 @@ def _missing(run: Trajectory, found: Beats, start: float) -> str:
         return f"{found.body} goes round instead of swinging"
     if not passages and run.simulated > found.nominal_period:
         return f"{found.body} never passed its rest position"
+    if passages and not turns and _went(run, found.body) < AT_REST:
+        return f"{found.body} stays in its rest position"
     if turns < FEWEST_TURNS and run.simulated > 2.0 * found.nominal_period:
         return f"{found.body} turned back {_times(turns)} in {run.simulated:.4g} s"
     if not len(found) and passages and turns >= FEWEST_TURNS:
@@ -74,6 +76,9 @@ def _missing(run: Trajectory, found: Beats, start: float) -> str:
     if run.simulated < need:
         return f"the run of {run.simulated:.4g} s is too short: {found.body} needs {need:.4g} s for two oscillations"
     return f"the last {run.simulated - start:.4g} s hold too few whole swings of {found.body}"
+
+
+AT_REST = 1e-9  # rad (m): what gravity's rounding may move a body that hangs still
 
 
 def _went(run: Trajectory, body: str) -> float:

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.geometry.loops import Loop, chords, polyline
+from watchsim.geometry.loops import Loop, chords, extents, polyline
 from watchsim.geometry.primitives import TURN, Arc, Edge, Line, Point
 from watchsim.mechanism.compile import scene_size
 from watchsim.scene.errors import Fault
@@ -307,10 +307,15 @@ LENS = 3  # points of an arc and its chord seen from afar: without area, and nea
 
 
 class _Layer:
-    """The outlines of one layer where they stand at the start: their chords, and open faces. `grain`: see `_grain`."""
+    """The outlines of one layer where they stand at the start: their chords, and open faces.
+
+    `grain`: see `_grain`; of a scene that is large for one body, the others are looked at as finely as they are drawn.
+    """
 
     def __init__(self, side: Side, loops: tuple[Loop, ...], pose: Pose, grain: float) -> None:
-        self.side, self.loops, self.pose, self.grain = side, loops, pose, grain
+        self.side, self.loops, self.pose = side, loops, pose
+        box = extents(loops) or (0.0, 0.0, 0.0, 0.0)
+        self.grain = grain = min(grain, max(1.0, math.dist(box[:2], box[2:]) / LARGEST_DRAWN))
         coarse = COARSE * grain
         self.points = [placed(chord_points(loop, coarse), pose) for loop in loops]
         low = [np.minimum(points[1:], points[:-1]) for points in self.points]
@@ -343,7 +348,7 @@ def _meeting(contact: int, a: _Layer, b: _Layer) -> Overlap | None:
     """The deepest point at which two layers touch or overlap; None where they are apart."""
     import shapely
 
-    rounding = DRAWING_ROUNDING * a.grain
+    rounding = DRAWING_ROUNDING * min(a.grain, b.grain)
     if not _meet(a.box[None], b.box[None] + rounding * SIDES)[0]:  # of nothing at all it is empty
         return None
     (region_a, faces_a, error_a), (region_b, faces_b, error_b) = (
@@ -371,7 +376,7 @@ def _near(a: _Layer, b: _Layer) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     import shapely
 
     marks = np.zeros(len(a.boxes), bool), np.zeros(len(b.boxes), bool)
-    margin = CLOSE * a.grain * SIDES
+    margin = CLOSE * max(a.grain, b.grain) * SIDES
     wide = a.boxes + margin
     inside_a, inside_b = np.flatnonzero(_meet(wide, b.box[None])), np.flatnonzero(_meet(b.boxes, a.box[None] + margin))
     if len(inside_a) and len(inside_b):

@@ -208,7 +208,7 @@ def _curve(axes: Axes, line: Line2D, x: Array, y: Array, columns: int) -> None:
 def _limits(axes: Axes, values: Array, angle: bool) -> None:
     """Room above and below; rounding noise of a resting body is not blown up; large angles in parts of a turn."""
     low, high = float(np.nanmin(values)), float(np.nanmax(values))
-    if high - low < EVEN * max(abs(low), abs(high)):  # a constant: its rounding is no motion
+    if high - low < (ROUNDED if angle else EVEN) * max(abs(low), abs(high)):  # a constant: its rounding is no motion
         low = high = 0.5 * (low + high)
         style.limits(axes, low, high, flat=0.1, unit=1.0)
     else:
@@ -231,7 +231,7 @@ TALL, TOP = 38.0, 6.5  # mm
 POINTS = 6000  # of a curve at least, for its bends
 WIDER = 1.8  # a phase against the rest of the curve
 AT_REST = 1e-3  # of a panel: a curve that is shorter both ways is drawn as a point
-EVEN = 1e-6  # of its value: a range that is smaller is that of a constant
+EVEN, ROUNDED = 1e-6, 1e-12  # of its value: a smaller range of a velocity, of an angle is that of a constant
 STILL = 1e-4  # a range smaller than this part of the value (or of 1 unit) is not magnified: a body at rest shows no rounding
 
 
