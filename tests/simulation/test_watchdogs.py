@@ -210,7 +210,7 @@ def test_a_run_that_crawls_says_who_and_since_when() -> None:
     def progress(*_: float) -> None: ...
 
     progress.crowded = said.append  # type: ignore[attr-defined]
-    scene = load(ROOT / "tests" / "data" / "hunt" / "levers-2001-15091.toml")
+    scene = load(Path(__file__).resolve().parents[1] / "data" / "hunt" / "levers-2001-15091.toml")
     simulate(scene, progress=progress)
     slow = [words for words in said if words]
     assert said[0] == "" and slow

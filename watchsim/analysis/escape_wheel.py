@@ -61,12 +61,14 @@ def _missing(run: Trajectory, found: Beats, start: float) -> str:
     one = next((one for one in oscillators(run.scene) if one.body == found.body), None)
     if one is not None and one.hertz is None:
         return f"gravity topples {found.body} from its rest position"
-    passages, turns = _passages(run, found), int((_own_events(run, found)["kind"] == EventKind.TURN).sum())
+    own = _own_events(run, found)
+    rates, turns = own["value"][own["kind"] == EventKind.CROSS], int((own["kind"] == EventKind.TURN).sum())
+    passages = len(rates)
     if found.angular and not turns and _went(run, found.body) > math.tau:
         return f"{found.body} goes round instead of swinging"
     if not passages and run.simulated > found.nominal_period:
         return f"{found.body} never passed its rest position"
-    if passages and not turns and _went(run, found.body) < AT_REST:
+    if passages and not turns and np.abs(rates).max() * found.nominal_period < AT_REST:
         return f"{found.body} stays in its rest position"
     if turns < FEWEST_TURNS and run.simulated > 2.0 * found.nominal_period:
         return f"{found.body} turned back {_times(turns)} in {run.simulated:.4g} s"
@@ -78,7 +80,7 @@ def _missing(run: Trajectory, found: Beats, start: float) -> str:
     return f"the last {run.simulated - start:.4g} s hold too few whole swings of {found.body}"
 
 
-AT_REST = 1e-9  # rad (m): what gravity's rounding may move a body that hangs still
+AT_REST = 1e-12  # rad (m) in a period: what gravity's rounding may move a body that hangs still
 
 
 def _went(run: Trajectory, body: str) -> float:
