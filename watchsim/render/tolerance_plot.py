@@ -136,6 +136,7 @@ def _scatter(axes: Axes, study: ToleranceStudy, samples: Samples, outputs: list[
                 axes.axhline(end / limit.factor, color=INK, linewidth=style.CURVE)
     axes.set_xlabel(label)
     axes.set_ylabel(output_label(one))
+    style.ticks(axes.xaxis, 5)
     style.dress(axes)
 
 
@@ -154,6 +155,7 @@ def _map(axes: Axes, study: ToleranceStudy, samples: Samples) -> None:
         axes.scatter(x[mine], y[mine], s=6.0, marker=mark, color=colour, linewidths=0.0, label=words)
     axes.set_xlabel(across)
     axes.set_ylabel(up)
+    style.ticks(axes.xaxis, 5)
     axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, frameon=False, fontsize=style.SMALL)
     style.dress(axes)
 

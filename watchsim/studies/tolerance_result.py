@@ -314,9 +314,9 @@ def _with_linear(found: Spread, space: Space, linear: Linear, column: str) -> Sp
     words = []
     if column not in SMOOTH and found.sigma > 0.0:
         if not 0.9 < sigma / found.sigma < 1.1:
-            words.append(f"linear gives {sigma / found.sigma:.2g} of the scatter")
+            words.append(f"the linear sigma is {sigma / found.sigma:.2g} times that of the samples")
         if abs(found.mean - level) > 0.2 * found.sigma:
-            words.append(f"the mean is {abs(found.mean - level) / found.sigma:.2g} sigmas off the nominal watch")
+            words.append(f"the mean is {abs(found.mean - level) / found.sigma:.2g} sigmas away from the nominal watch")
     return dataclasses.replace(
         found, nominal=abs(level) if column in SMOOTH else level, linear_sigma=sigma, linear_low=low, linear_high=high,
         remark="; ".join(words),

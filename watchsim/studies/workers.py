@@ -203,7 +203,7 @@ class Cluster:
             ) from None
         self._distributed, self._address = distributed, address
         if stopping.installed():  # what is lost is said in one sentence
-            for name in ("distributed", "tornado", "asyncio"):
+            for name in ("distributed", "distributed.client", "tornado", "asyncio"):  # the client has a level of its own
                 logging.getLogger(name).setLevel(logging.CRITICAL + 1)
         try:
             self._client = distributed.Client(address, timeout=TIMEOUT, set_as_default=False)
