@@ -150,7 +150,7 @@ def test_a_yield_is_that_of_the_design(tmp_path, monkeypatch):
     body, _, _ = (tmp_path / "scene.toml").read_text(encoding="utf-8").partition("[expect]")
     more = '[expect]\namplitude = { min = "285°" }\n[tolerances]\n"torques.0.value" = { limits = "±0.1 µN·m" }\n'
     (tmp_path / "scene.toml").write_text(body + more, encoding="utf-8")
-    monkeypatch.setattr(improving, "SAMPLES", 16)
+    monkeypatch.setattr(improving, "SAMPLES", 128)
     edge = ws.improve(tmp_path, {"torques.0.value": None}, "amplitude = 285°").keys["torques.0.value"][1]
     knobs = knobs_from(ws.load(tmp_path), {"torques.0.value": (edge - 1e-6, edge + 1e-6)}, [])
     search = improving.Search(ws.load(tmp_path), knobs, aims_from(["yield max"], knobs, "--goal", []), (), Here())
