@@ -176,3 +176,10 @@ def test_a_scene_that_does_not_work_is_no_start(tmp_path):
     path.write_text("amplitude_deg;rate_s_per_d\n270,5;1,5\n", encoding="utf-8")
     found = ws.fit(ws.load(BENCH).set("torques.0.value", "-0.01 µN·m"), path, ["torques.0.value"])
     assert not found.found and "does not work as it is" in found.message
+
+
+def test_a_fault_names_the_command_that_was_given(tmp_path, capsys):
+    readings = tmp_path / "decay.csv"
+    readings.write_text("t_s,angle_deg\n0,1\n1,0.5\n")
+    assert main(["fit", str(ws.profiles_dir() / "swiss_lever"), str(readings), "--vary", "bodies.nope.inertia"]) == 2
+    assert "fit  bodies.nope.inertia" in capsys.readouterr().err

@@ -128,7 +128,7 @@ def fit(
 
         scene = load(scene)
     faults: list[Fault] = []
-    knobs = knobs_from(scene, vary if isinstance(vary, Mapping) else dict.fromkeys(vary), faults)
+    knobs = knobs_from(scene, vary if isinstance(vary, Mapping) else dict.fromkeys(vary), faults, "fit")
     if not knobs and not faults:
         faults.append(Fault("--vary", 'name what may be changed, such as --vary "damping.0.q_factor"', place="fit"))
     known = measured if isinstance(measured, Measured) else read_measured(measured, scene, faults)

@@ -75,15 +75,17 @@ def shown(output: Output, value: float, digits: int = 6) -> str:
     return f"{value:.{digits}g}{gap}{output.unit}".replace("-", "−")
 
 
-def knobs_from(scene: Scene, limits: Mapping[str, tuple[Any, Any] | None], faults: list[Fault]) -> tuple[Knob, ...]:
-    """The numbers at those keys; with limits, SI numbers or texts, or None. Faults are added to those found."""
+def knobs_from(
+    scene: Scene, limits: Mapping[str, tuple[Any, Any] | None], faults: list[Fault], place: str = PLACE
+) -> tuple[Knob, ...]:
+    """The numbers at those keys; with limits, SI numbers or texts, or None. Faults are added to those found, under `place`."""
     found: list[Knob] = []
     for name, pair in limits.items():
         key = full_key(scene, name)
         if any(one.key == key for one in found):
-            faults.append(Fault(name, "is given twice; name each key once", place=PLACE))
+            faults.append(Fault(name, "is given twice; name each key once", place=place))
             continue
-        knob = _knob(scene, key, pair, faults)
+        knob = _knob(scene, key, pair, faults, place)
         if knob is not None:
             found.append(knob)
     return tuple(found)
@@ -95,12 +97,12 @@ def full_key(scene: Scene, name: str) -> str:
     return f"{DESIGN}.{name}" if "." not in name and isinstance(table, dict) and name in table and name != "of" else name
 
 
-def _knob(scene: Scene, key: str, pair: tuple[Any, Any] | None, faults: list[Fault]) -> Knob | None:
+def _knob(scene: Scene, key: str, pair: tuple[Any, Any] | None, faults: list[Fault], place: str) -> Knob | None:
     before, dimension = len(faults), dimension_of(scene, key)
     held = value_at(scene, key)
     quantity = None if held is None or dimension is None else quantity_at(scene, key, held)
     if dimension is None or (held is None and pair is None):
-        faults.append(Fault(key, _advice(scene, key), place=PLACE))
+        faults.append(Fault(key, _advice(scene, key), place=place))
         return None
     low, high, value = math.nan, math.nan, math.nan
     try:
@@ -109,18 +111,18 @@ def _knob(scene: Scene, key: str, pair: tuple[Any, Any] | None, faults: list[Fau
         if pair is not None:
             low, high = (parse(one, dimension) if isinstance(one, str) else float(one) for one in pair)
     except (UnitError, TypeError) as error:
-        faults.append(Fault(key, str(error), f" = {pair[0]}:{pair[1]}" if pair else "", place=PLACE))
+        faults.append(Fault(key, str(error), f" = {pair[0]}:{pair[1]}" if pair else "", place=place))
         return None
     unit = unit_of(held if held is not None else pair[0] if pair else "", dimension)
     if pair is not None and not low < high:
-        faults.append(Fault(key, "the first limit must be below the second", f" = {pair[0]}:{pair[1]}", place=PLACE))
+        faults.append(Fault(key, "the first limit must be below the second", f" = {pair[0]}:{pair[1]}", place=place))
     least, most = (None, None) if quantity is None else (quantity.low, quantity.high)
     if pair is None:
         wide = sorted((value / FAR, value * FAR)) if value else [-1.0, 1.0]
         low, high = wide[0] if least is None else max(least, wide[0]), wide[1] if most is None else min(most, wide[1])
     for limit, bad, word in ((least, low, "least"), (most, high, "most")):
         if pair is not None and limit is not None and (bad < limit if word == "least" else bad > limit) and low < high:
-            faults.append(Fault(key, f"it can be {show(limit, unit)} at {word}", f" = {pair[0]}:{pair[1]}", place=PLACE))
+            faults.append(Fault(key, f"it can be {show(limit, unit)} at {word}", f" = {pair[0]}:{pair[1]}", place=place))
     if len(faults) > before:
         return None
     value = 0.5 * (low + high) if math.isnan(value) else value
