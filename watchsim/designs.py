@@ -2,7 +2,7 @@
 
     import watchsim as ws
     mine = ws.designs.swiss_lever(lock="2°", teeth=20)
-    mine.write("my_lever")          # drawings (DXF) and scene.toml
+    mine.write("my_lever")          # drawings (DXF) and scene.toml; scene.toml with [design] alone: drawings=False
     run = ws.simulate(mine.scene())
 
 `ws.designs.names()` lists them; `help(ws.designs.swiss_lever)` lists the dimensions of one. In: dimensions. Out: drawings and a
@@ -18,7 +18,8 @@ from pathlib import Path
 from typing import Any
 
 from watchsim.construction import registry
-from watchsim.construction.design import Design
+from watchsim.construction import scene_builder as toml
+from watchsim.construction.design import Design, Dimension
 from watchsim.drawing.write import Sheet
 from watchsim.scene.designed import chosen, designed
 from watchsim.scene.load import from_mapping
@@ -46,20 +47,38 @@ class Drawn:
         """Every dimension with its unit, as in the [design] table of a scene."""
         return {one.name: one.shown(getattr(self.values, one.name)) for one in self.design.dimensions}
 
-    def files(self) -> dict[str, bytes]:
+    def files(self, drawings: bool = True) -> dict[str, bytes]:
         """Name -> content of everything that `write` writes."""
-        drawings = {f"{name}.dxf": sheet.dxf() for name, sheet in self.sheets.items()}
         known = self.design.name in registry.names()  # a design that is still being written has no scene of its name
         tolerances = usual(self.scene()) if known else ""
-        return {**drawings, SCENE: (self.design.scene(self.values) + tolerances).encode()}
+        sheets = self.sheets if drawings else {}
+        text = self.design.scene(self.values) if drawings else self._dimensioned()
+        return {**{f"{name}.dxf": sheet.dxf() for name, sheet in sheets.items()}, SCENE: (text + tolerances).encode()}
+
+    def _dimensioned(self) -> str:
+        """The text of a scene that holds the dimensions, each with its meaning, in place of drawings."""
+        head = f"# {self.design.title}, drawn to the dimensions below whenever the scene is read.\n"
+        entries: Any = {one.name: self._noted(one) for one in self.design.dimensions}
+        return f"{head}\n{toml.table('[design]', of=self.design.name, **entries)}"
+
+    def _noted(self, one: Dimension) -> toml.Noted:
+        written = self.written(one)
+        gap = max(2, 16 - len(str(written)) - 2 * isinstance(written, str))
+        return toml.Noted(written, f"{one.meaning} (default {one.shortly(one.default)})", gap)
+
+    def written(self, one: Dimension) -> str | float:
+        """The value of a dimension as a scene file holds it: text with its unit, or a plain number."""
+        value: float = getattr(self.values, one.name)
+        return one.shown(value) if one.unit else value
 
     def scene(self) -> Scene:
         """The scene, ready to be simulated; its dimensions can be changed: scene.set("design.lock", "2°")."""
         return from_mapping({"design": {"of": self.design.name, **self.dimensions}}, None)
 
-    def write(self, folder: str | Path, force: bool = False) -> Path:
-        """Drawings and scene.toml in `folder`, whole or not at all. FileExistsError where something is there already;
-        `force` replaces files of the same names and keeps the others."""
+    def write(self, folder: str | Path, force: bool = False, drawings: bool = True) -> Path:
+        """Drawings and scene.toml in `folder`, whole or not at all, without `drawings` a scene.toml that holds the dimensions
+        under [design]. FileExistsError where something is there already; `force` replaces files of the same names and keeps
+        the others."""
         target = Path(folder)
         if target.is_file():
             raise FileExistsError(f"{target} is a file; drawings and scene need a folder of their own")
@@ -67,7 +86,7 @@ class Drawn:
             raise FileExistsError(
                 f"{target} already exists and was not changed. Choose another folder, or replace with --force"
             )
-        files = self.files()
+        files = self.files(drawings)
 
         def fill(place: Path) -> None:
             for name, data in files.items():

@@ -9,25 +9,98 @@ from every_time import few
 
 from watchsim.cli import main
 from watchsim.construction.registry import names
+from watchsim.designs import Maker
+from watchsim.scene.designed import designed
+from watchsim.scene.errors import SceneError
 from watchsim.scene.load import load
 
+DRAWINGS = ["banking.dxf", "escape_wheel.dxf", "lever.dxf", "roller.dxf"]
 
-def test_writes_a_scene_that_loads(tmp_path, capsys):
+
+def _files(folder):
+    return sorted(path.name for path in folder.iterdir())
+
+
+def test_writes_a_scene_whose_dimensions_can_be_changed(tmp_path, capsys):
     folder = tmp_path / "my_lever"
-    options = ["--lock", "2°", "--draw", "13.5°", "--teeth", "20", "-o", str(folder)]
-    assert main(["new", "swiss_lever", *options]) == 0
-    names = ["banking.dxf", "escape_wheel.dxf", "lever.dxf", "roller.dxf", "scene.toml"]
-    assert sorted(path.name for path in folder.iterdir()) == names
-    assert load(folder).title == "Swiss lever, 28800 vph, 20 teeth"
-    assert "lock = 2° (default 1.5°)" in (folder / "scene.toml").read_text(encoding="utf-8")
+    assert main(["new", "swiss_lever", "--lock", "2°", "--draw", "13.5°", "--teeth", "20", "-o", str(folder)]) == 0
+    assert _files(folder) == ["scene.toml"]
+    scene = load(folder)
+    assert scene.title == "Swiss lever, 28800 vph, 20 teeth"
+    assert set(scene.source["design"]) == {"of", *(one.name for one in Maker(designed("swiss_lever")).dimensions)}
+    assert scene.set("design.teeth", "18").title == "Swiss lever, 28800 vph, 18 teeth"
+    assert scene.tolerances
     assert main(["check", str(folder)]) == 0
     capsys.readouterr()
-    assert main(["new", "swiss_lever", "-o", str(folder)]) == 2
+
+
+def test_drawings_are_written_where_they_are_requested(tmp_path, capsys):
+    folder = tmp_path / "my_lever"
+    assert main(["new", "swiss_lever", "--lock", "2°", "--drawings", "-o", str(folder)]) == 0
+    assert _files(folder) == [*DRAWINGS, "scene.toml"]
+    assert "lock = 2° (default 1.5°)" in (folder / "scene.toml").read_text(encoding="utf-8")
+    with pytest.raises(SceneError, match="watchsim new swiss_lever"):
+        load(folder).set("design.lock", "1.5°")
+    capsys.readouterr()
+
+
+@pytest.mark.parametrize("name", few(names(), lambda name: name not in ("graham", "cam")))
+def test_a_scene_of_dimensions_is_the_scene_of_the_drawings(name, tmp_path):
+    drawn = Maker(designed(name))()
+    one, other = (load(drawn.write(tmp_path / str(drawings), drawings=drawings)) for drawings in (False, True))
+    assert [body.loops for body in one.bodies] == [body.loops for body in other.bodies]
+    kinds = [
+        "title",
+        "springs",
+        "torques",
+        "damping",
+        "contacts",
+        "gears",
+        "line_springs",
+        "duration",
+        "tolerances",
+        "lift_angle",
+    ]
+    assert all(getattr(one, kind) == getattr(other, kind) for kind in kinds)
+
+
+def test_changing_one_dimension_keeps_all_else(tmp_path, capsys):
+    folder, path = tmp_path / "my_lever", tmp_path / "my_lever" / "scene.toml"
+    assert main(["new", "swiss_lever", "--teeth", "20", "-o", str(folder)]) == 0
+    path.write_text(path.read_text(encoding="utf-8") + '\n[run]\nduration = "3 s" # mine\n', encoding="utf-8")
+    capsys.readouterr()
+    assert main(["new", "swiss_lever", "--lock", "2°", "-o", str(folder)]) == 2
     assert "was not changed" in capsys.readouterr().err
-    assert main(["new", "swiss_lever", "-o", str(folder), "--force", "--json"]) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert told["dimensions"]["lock"] == "1.5°"
-    assert sorted(told["files"]) == names
+    assert main(["new", "swiss_lever", "--lock", "2°", "-o", str(folder), "--force", "--json"]) == 0
+    said = capsys.readouterr()
+    dimensions = json.loads(said.out)["dimensions"]
+    assert (dimensions["teeth"], dimensions["lock"], dimensions["draw"]) == ("20", "2°", "13°")
+    scene = load(folder)
+    assert (scene.source["design"]["lock"], scene.source["design"]["teeth"], scene.duration) == ("2°", "20", 3.0)
+    assert path.read_text(encoding="utf-8").endswith("# mine\n")
+    assert main(["new", "swiss_lever", "--drawings", "-o", str(folder), "--force"]) == 0
+    said = capsys.readouterr()
+    assert "teeth = 20, lock = 2°" in said.err and "was replaced" in said.err
+    assert load(folder).title == "Swiss lever, 28800 vph, 20 teeth"
+    before = path.read_bytes()
+    for words in (["swiss_lever", "--teeth", "18"], ["graham"]):
+        assert main(["new", *words, "-o", str(folder), "--force"]) == 2
+        assert "Choose another folder" in capsys.readouterr().err
+    assert path.read_bytes() == before
+
+
+def test_the_scene_of_another_design_is_not_replaced(tmp_path, capsys):
+    assert main(["new", "swiss_lever", "-o", str(tmp_path / "a")]) == 0
+    assert main(["new", "graham", "-o", str(tmp_path / "a"), "--force"]) == 2
+    assert "another design, swiss_lever" in capsys.readouterr().err
+
+
+def test_dimensions_kept_are_judged_with_those_given(tmp_path, capsys):
+    assert main(["new", "swiss_lever", "--teeth", "20", "-o", str(tmp_path / "a")]) == 0
+    before = (tmp_path / "a" / "scene.toml").read_bytes()
+    assert main(["new", "swiss_lever", "--lock", "9°", "-o", str(tmp_path / "a"), "--force"]) == 2
+    assert "design.lock" in capsys.readouterr().err
+    assert (tmp_path / "a" / "scene.toml").read_bytes() == before
 
 
 def test_lists(capsys):

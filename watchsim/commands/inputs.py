@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -123,35 +123,45 @@ def is_drawing(name: str) -> bool:
     return Path(name).suffix.lower() in ENDINGS or Path(name).is_file()
 
 
+def unused_folder(folder: Path, force: bool) -> Path:
+    """The folder, if a new scene can be written there; FileExistsError where something is there already, unless by `force`."""
+    if folder.is_file():
+        raise FileExistsError(f"{folder} is a file; drawings and scene need a folder of their own")
+    if not force and folder.is_dir() and next(folder.iterdir(), None) is not None:
+        raise FileExistsError(f"{folder} already exists and was not changed. Choose another folder, or replace with --force")
+    return secured_folder(folder, "drawings and scene")
+
+
+def write_start(folder: Path, files: Mapping[str, bytes]) -> list[str]:
+    """Write a new scene with its drawings, whole or not at all; the names of all files."""
+    from watchsim.storage.write import write_folder
+
+    def fill(place: Path) -> None:
+        for name, data in files.items():
+            (place / name).write_bytes(data)
+
+    write_folder(folder, fill, files.__contains__, "drawings and scene")
+    return list(files)
+
+
 def start_from_drawings(names: Sequence[str], output: str | None, as_json: bool, force: bool) -> None:
     """Write a folder with the scene that the drawings suggest, and the drawings it needs, whole or not at all."""
     from watchsim.proposal.propose import NothingToPropose, propose
-    from watchsim.storage.write import write_folder
 
     paths = [Path(name) for name in names]
     missing = [f"{path}: {'is a folder' if path.is_dir() else 'there is no such file'}" for path in paths if not path.is_file()]
     if missing:
         raise InputError("\n".join(missing))
-    folder = Path(output or paths[0].stem)
-    if folder.is_file():
-        raise FileExistsError(f"{folder} is a file; drawings and scene need a folder of their own")
-    if not force and folder.is_dir() and next(folder.iterdir(), None) is not None:
-        raise FileExistsError(f"{folder} already exists and was not changed. Choose another folder, or replace with --force")
-    secured_folder(folder, "drawings and scene")
+    folder = unused_folder(Path(output or paths[0].stem), force)
     try:
         found = propose(paths)
     except NothingToPropose as error:
         raise InputError(f"{error}.") from error
-
-    def fill(place: Path) -> None:
-        for name, data in found.files.items():
-            (place / name).write_bytes(data)
-
-    write_folder(folder, fill, found.files.__contains__, "drawings and scene")
+    names = write_start(folder, found.files)
     if as_json:
-        print_json(as_mapping(found, folder))
+        print_json({**as_mapping(found, folder), "files": names})
         return
-    print(f"{folder}: {', '.join(found.files)}")
+    print(f"{folder}: {', '.join(names)}")
     for role in found.roles:
         print(f"  {role.name}: {role.why}")
     for first, second in found.contacts:
@@ -175,7 +185,6 @@ def as_mapping(found: Proposal, folder: Path) -> dict[str, object]:
     ]
     return {
         "folder": str(folder),
-        "files": list(found.files),
         "bodies": bodies,
         "contacts": [list(pair) for pair in found.contacts],
         "guesses": [{"key": guess.key, "value": guess.value, "why": guess.why} for guess in found.guesses],

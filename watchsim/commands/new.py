@@ -19,7 +19,8 @@ DRAWINGS_USAGE = "watchsim new DRAWING [DRAWING ...] [-o DIR] [--json] [--force]
 
 
 def options(parser: argparse.ArgumentParser) -> None:
-    parser.usage = f"watchsim new DESIGN [--DIMENSION VALUE ...] [-o DIR] [--list] [--json] [--force]\n       {DRAWINGS_USAGE}"
+    design_usage = "watchsim new DESIGN [--DIMENSION VALUE ...] [-o DIR] [--drawings] [--list] [--json] [--force]"
+    parser.usage = f"{design_usage}\n       {DRAWINGS_USAGE}"
     parser.epilog = (
         'For example: watchsim new swiss_lever --lock "2°" --draw "13.5°" --teeth 20 -o my_lever. '
         "watchsim new --list lists the designs, watchsim new DESIGN --list their dimensions. "
@@ -39,15 +40,19 @@ def _common(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--list", action="store_true", default=unset, help="list designs, or the dimensions of a design")
     parser.add_argument("--json", action="store_true", default=unset, help="print one JSON object instead of text")
     parser.add_argument(
-        "--force", action="store_true", default=unset, help="replace drawings and scene of a folder that exists"
+        "--force", action="store_true", default=unset, help="change the scene of a folder that exists; what is not given stays"
     )
+    written_out = (
+        "write drawings (DXF) and the whole scene, to be edited by hand, in place of a scene that holds the dimensions"
+    )
+    parser.add_argument("--drawings", action="store_true", default=unset, help=written_out)
 
 
 def run(args: argparse.Namespace) -> int:
     from watchsim.commands.inputs import is_drawing
     from watchsim.scene.designed import designed
 
-    asked = {"output": None, "list": False, "json": False, "force": False, **vars(args)}
+    asked = {"output": None, "list": False, "json": False, "force": False, "drawings": False, **vars(args)}
     if asked["design"] is None:
         if not asked["list"]:
             raise InputError("watchsim new: name a design; watchsim new --list lists them.")
@@ -145,21 +150,59 @@ def _range(one: Dimension) -> str:
 
 
 def _write(design: Design, given: dict[str, object], asked: dict[str, Any]) -> None:
-    from watchsim.commands.inputs import secured_folder
-    from watchsim.designs import Drawn
+    from watchsim.commands.inputs import unused_folder, write_start
+    from watchsim.designs import SCENE, Drawn
     from watchsim.mechanism.overlap import overlap_faults
     from watchsim.scene.designed import chosen
     from watchsim.scene.errors import SceneError
+    from watchsim.scene.load import changed, load
+    from watchsim.scene.rewrite import rewritten
 
-    folder = Path(asked["output"] or design.name)
-    drawn = Drawn(design, chosen(design, given))
-    faults = overlap_faults(drawn.scene())
+    folder = unused_folder(Path(asked["output"] or design.name), asked["force"])
+    path, drawings = folder / SCENE, asked["drawings"]
+    kept = _kept(design, path, given)
+    drawn = Drawn(design, chosen(design, {**(kept or {}), **given}))
+    if kept is None or drawings:
+        scene, files = drawn.scene(), drawn.files(drawings)
+    else:  # all else that the scene says stays as well
+        before, values = load(path), {one.name: drawn.written(one) for one in design.dimensions if one.name in given}
+        changes = {f"design.{name}": value for name, value in values.items()}
+        scene, files = changed(before, changes), {SCENE: rewritten(before, changes).encode()}
+    faults = overlap_faults(scene)
     if faults:
         raise SceneError(faults)
-    secured_folder(folder, "drawings and scene")
-    drawn.write(folder, force=asked["force"])
+    names = write_start(folder, files)
     if asked["json"]:
-        print_json({"folder": str(folder), "files": list(drawn.files()), "dimensions": drawn.dimensions})
+        print_json({"folder": str(folder), "files": names, "dimensions": drawn.dimensions})
         return
-    print(f"{folder}: {', '.join(drawn.files())}")
+    print(f"{folder}: {', '.join(names)}")
+    same = [one for one in design.dimensions if kept and one.name in kept and getattr(drawn.values, one.name) != one.default]
+    if same:
+        say(f"Kept as it was in {path}: {', '.join(f'{one.name} = {drawn.dimensions[one.name]}' for one in same)}.")
+    if kept is not None and drawings:
+        say("All else that it said was replaced by the design's own scene.")
+    if not drawings:
+        say(f"Its dimensions stand in {path}; --set design.NAME=VALUE tries another one.")
     say(f"watchsim run {folder} simulates it; watchsim check {folder} --png start.png shows it.")
+
+
+def _kept(design: Design, path: Path, given: dict[str, object]) -> dict[str, object] | None:
+    """The dimensions that a scene of the same design in that place holds and that are not given; None where there is none.
+
+    InputError where the scene there does not hold its dimensions: they would silently become the defaults again.
+    """
+    from watchsim.scene.keys import DESIGN
+    from watchsim.scene.load import read_mapping
+
+    if not path.is_file():
+        return None
+    table = read_mapping(path).get(DESIGN)
+    if not isinstance(table, dict):
+        raise InputError(
+            f"{path} has no [design]: its dimensions are not known, and those that you did not give would become the defaults. "
+            "Choose another folder with -o, or remove this scene first."
+        )
+    if table.get("of") != design.name:
+        other = f"{path} is a scene of another design, {table.get('of')}"
+        raise InputError(f"{other}. Choose another folder with -o, or remove it first.")
+    return {name: value for name, value in table.items() if name != "of" and name not in given}

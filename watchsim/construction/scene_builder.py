@@ -37,7 +37,7 @@ def scene(*tables: str | None) -> str:
     return "\n".join(one for one in tables if one is not None)
 
 
-def table(heading: str, remark: str = "", width: int = 0, **entries: object) -> str:
+def table(heading: str, remark: str = "", width: int = 0, /, **entries: object) -> str:
     """A heading with its entries; the signs = stand below each other, `width` characters or the longest key from the left."""
     given = {key: value for key, value in entries.items() if value is not None}
     wide = width or max(map(len, given))
@@ -135,7 +135,7 @@ def q_factor(body: str, value: float) -> str:
 
 def run(duration: str, tolerance: str = "1e-9") -> str:
     """How long and how accurately it is simulated."""
-    return table("[run]", width=9, duration=duration) + f"tolerance = {tolerance}\n"
+    return table("[run]", "", 9, duration=duration) + f"tolerance = {tolerance}\n"
 
 
 def timegrapher(lift_angle: str | Noted) -> str:

@@ -189,7 +189,8 @@ def _advice(path: tuple[str, ...]) -> str:
     if section == "lock":
         return "watchsim writes this table; it cannot be changed."
     if section == "design":
-        return "This scene has no [design]: its bodies, springs, torques and contacts are written out. Change a key of these."
+        written_out = "This scene has no [design]: its bodies, springs, torques and contacts are written out"
+        return f"{written_out}. Change a key of these, or start from a design: watchsim new swiss_lever"
     _, keys, at = entered(path)
     if at:
         return nearest(path[at], keys)

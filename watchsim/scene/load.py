@@ -205,15 +205,24 @@ def load(path: str | Path) -> Scene:
 def load_set(path: str | Path, changes: Mapping[str, object]) -> Scene:
     """The same with the keys and values of --set in it, put there before anything is judged: they may replace faulty ones."""
     path = _scene_file(Path(path))
-    text = _text(path)
-    try:
-        mapping = parsed(text)
-    except ValueError as error:
-        raise SceneError([_syntax_fault(path, text, str(error))]) from error
+    text, mapping = _read(path)
     faults = Faults(str(path), key_lines(text), changed=frozenset(changes), by="--set")
     later = {key: value for key, value in changes.items() if unwritten(mapping, key)}
     scene = from_mapping(mapping, path, faults, {key: value for key, value in changes.items() if key not in later})
     return changed(scene, later, faults) if later else scene
+
+
+def read_mapping(path: Path) -> dict[str, Any]:
+    """What stands in a scene file, unjudged; SceneError where it is no TOML."""
+    return _read(path)[1]
+
+
+def _read(path: Path) -> tuple[str, dict[str, Any]]:
+    text = _text(path)
+    try:
+        return text, parsed(text)
+    except ValueError as error:
+        raise SceneError([_syntax_fault(path, text, str(error))]) from error
 
 
 def _scene_file(path: Path) -> Path:

@@ -151,7 +151,7 @@ def value_at(scene: Scene, key: str) -> Any:
 def _advice(scene: Scene, key: str) -> str:
     if "." not in key and DESIGN not in scene.source:
         why = "this scene has no [design], whose dimensions have such names"
-        return f'{why}: write [design] with of = "swiss_lever" in place of its drawings, or name a path such as torques.0.value'
+        return f"{why}: watchsim new swiss_lever makes one that has, or name a path such as torques.0.value"
     try:
         scene.set(key, "0")
     except SceneError as error:
