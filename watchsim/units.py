@@ -13,7 +13,7 @@ from fractions import Fraction
 from functools import lru_cache
 from numbers import Real
 
-Powers = tuple[int, int, int, int]  # of metre, kilogram, second, radian
+Powers = tuple[int, ...]  # of metre, kilogram, second, radian, kelvin
 
 
 class UnitError(ValueError):
@@ -43,69 +43,72 @@ class Unit:
         return float(self.ratio) * math.pi**self.turns
 
     def to_the(self, exponent: int) -> Unit:
-        m, kg, s, rad = (power * exponent for power in self.powers)
-        return Unit(self.ratio**exponent, self.turns * exponent, (m, kg, s, rad))
+        return Unit(self.ratio**exponent, self.turns * exponent, tuple(power * exponent for power in self.powers))
 
     def __mul__(self, other: Unit) -> Unit:
-        m, kg, s, rad = (a + b for a, b in zip(self.powers, other.powers, strict=True))
-        return Unit(self.ratio * other.ratio, self.turns + other.turns, (m, kg, s, rad))
+        powers = tuple(a + b for a, b in zip(self.powers, other.powers, strict=True))
+        return Unit(self.ratio * other.ratio, self.turns + other.turns, powers)
 
 
-NUMBER = Dimension("plain number", ((0, 0, 0, 0),), "", ("", "%"))
-RATE = Dimension("rate", ((0, 0, 0, 0),), "s/s", ("ppm", "s/d"))
-ANGLE = Dimension("angle", ((0, 0, 0, 1),), "rad", ("rad", "°"))
-SPIN = Dimension("angular velocity", ((0, 0, -1, 1),), "rad/s", ("rad/s", "°/s"))
-LENGTH = Dimension("length", ((1, 0, 0, 0),), "m", ("inch", "mm"))
-MASS = Dimension("mass", ((0, 1, 0, 0),), "kg", ("g", "mg"))
-TIME = Dimension("time", ((0, 0, 1, 0),), "s", ("ms", "s"))
-SPEED = Dimension("speed", ((1, 0, -1, 0),), "m/s", ("m/s", "mm/s"))
-ACCELERATION = Dimension("acceleration", ((1, 0, -2, 0),), "m/s²", ("mm/s²", "m/s²"))
-PRESSURE = Dimension("modulus of elasticity", ((-1, 1, -2, 0),), "Pa", ("MPa", "GPa"))
-DENSITY = Dimension("density", ((-3, 1, 0, 0),), "kg/m³", ("kg/m³", "g/cm³"))
-INERTIA = Dimension("inertia", ((2, 1, 0, 0),), "kg·m²", ("g·cm²", "mg·cm²"))
-TORQUE = Dimension("torque", ((2, 1, -2, 0),), "N·m", ("mN·m", "µN·m"))
-FORCE = Dimension("force", ((1, 1, -2, 0),), "N", ("mN", "N"))
-FREQUENCY = Dimension("frequency", ((0, 0, -1, 0),), "Hz", ("Hz", "vph"))
-ROTARY_STIFFNESS = Dimension("rotary stiffness", ((2, 1, -2, -1),), "N·m/rad", ("mN·m/rad", "µN·m/rad"))
-LINEAR_STIFFNESS = Dimension("stiffness", ((0, 1, -2, 0),), "N/m", ("N/mm", "N/m"))
-ROTARY_VISCOUS = Dimension("rotary damping", ((2, 1, -1, -1), (2, 1, -1, 0)), "N·m·s/rad", ("µN·m·s/rad", "nN·m·s/rad"))
-LINEAR_VISCOUS = Dimension("damping", ((0, 1, -1, 0),), "N·s/m", ("mN·s/m", "N·s/m"))
-ROTARY_QUADRATIC = Dimension("rotary quadratic damping", ((2, 1, 0, -2),), "N·m·s²/rad²", ("µN·m·s²/rad²", "nN·m·s²/rad²"))
-LINEAR_QUADRATIC = Dimension("quadratic damping", ((-1, 1, 0, 0),), "N·s²/m²", ("mN·s²/m²", "N·s²/m²"))
-TRAVEL_PER_TURN = Dimension("travel per angle", ((1, 0, 0, -1), (1, 0, 0, 0)), "m/rad", ("mm/rev", "mm/rad"))
-PER_LENGTH = Dimension("angle per travel", ((-1, 0, 0, 1),), "rad/m", ("rev/mm", "rad/mm"))
+NUMBER = Dimension("plain number", ((0, 0, 0, 0, 0),), "", ("", "%"))
+RATE = Dimension("rate", ((0, 0, 0, 0, 0),), "s/s", ("ppm", "s/d"))
+ANGLE = Dimension("angle", ((0, 0, 0, 1, 0),), "rad", ("rad", "°"))
+SPIN = Dimension("angular velocity", ((0, 0, -1, 1, 0),), "rad/s", ("rad/s", "°/s"))
+LENGTH = Dimension("length", ((1, 0, 0, 0, 0),), "m", ("inch", "mm"))
+MASS = Dimension("mass", ((0, 1, 0, 0, 0),), "kg", ("g", "mg"))
+TIME = Dimension("time", ((0, 0, 1, 0, 0),), "s", ("ms", "s"))
+SPEED = Dimension("speed", ((1, 0, -1, 0, 0),), "m/s", ("m/s", "mm/s"))
+ACCELERATION = Dimension("acceleration", ((1, 0, -2, 0, 0),), "m/s²", ("mm/s²", "m/s²"))
+PRESSURE = Dimension("modulus of elasticity", ((-1, 1, -2, 0, 0),), "Pa", ("MPa", "GPa"))
+DENSITY = Dimension("density", ((-3, 1, 0, 0, 0),), "kg/m³", ("kg/m³", "g/cm³"))
+INERTIA = Dimension("inertia", ((2, 1, 0, 0, 0),), "kg·m²", ("g·cm²", "mg·cm²"))
+TORQUE = Dimension("torque", ((2, 1, -2, 0, 0),), "N·m", ("mN·m", "µN·m"))
+FORCE = Dimension("force", ((1, 1, -2, 0, 0),), "N", ("mN", "N"))
+FREQUENCY = Dimension("frequency", ((0, 0, -1, 0, 0),), "Hz", ("Hz", "vph"))
+ROTARY_STIFFNESS = Dimension("rotary stiffness", ((2, 1, -2, -1, 0),), "N·m/rad", ("mN·m/rad", "µN·m/rad"))
+LINEAR_STIFFNESS = Dimension("stiffness", ((0, 1, -2, 0, 0),), "N/m", ("N/mm", "N/m"))
+ROTARY_VISCOUS = Dimension("rotary damping", ((2, 1, -1, -1, 0), (2, 1, -1, 0, 0)), "N·m·s/rad", ("µN·m·s/rad", "nN·m·s/rad"))
+LINEAR_VISCOUS = Dimension("damping", ((0, 1, -1, 0, 0),), "N·s/m", ("mN·s/m", "N·s/m"))
+ROTARY_QUADRATIC = Dimension("rotary quadratic damping", ((2, 1, 0, -2, 0),), "N·m·s²/rad²", ("µN·m·s²/rad²", "nN·m·s²/rad²"))
+LINEAR_QUADRATIC = Dimension("quadratic damping", ((-1, 1, 0, 0, 0),), "N·s²/m²", ("mN·s²/m²", "N·s²/m²"))
+TRAVEL_PER_TURN = Dimension("travel per angle", ((1, 0, 0, -1, 0), (1, 0, 0, 0, 0)), "m/rad", ("mm/rev", "mm/rad"))
+PER_LENGTH = Dimension("angle per travel", ((-1, 0, 0, 1, 0),), "rad/m", ("rev/mm", "rad/mm"))
+TEMPERATURE = Dimension("temperature", ((0, 0, 0, 0, 1),), "°C", ("°C", "°C"))  # nothing here needs its absolute value
+PER_KELVIN = Dimension("temperature coefficient", ((0, 0, 0, 0, -1),), "/K", ("ppm/K", "ppm/K"))
 DIMENSIONS = (
     *(NUMBER, ANGLE, SPIN, LENGTH, MASS, TIME, SPEED, ACCELERATION, PRESSURE, DENSITY, INERTIA, TORQUE, FORCE, FREQUENCY),
     *(ROTARY_STIFFNESS, LINEAR_STIFFNESS, ROTARY_VISCOUS, LINEAR_VISCOUS, ROTARY_QUADRATIC, LINEAR_QUADRATIC, RATE),
-    *(TRAVEL_PER_TURN, PER_LENGTH),
+    *(TRAVEL_PER_TURN, PER_LENGTH, TEMPERATURE, PER_KELVIN),
 )
 
 _PREFIXES = {"n": -9, "µ": -6, "u": -6, "m": -3, "c": -2, "d": -1, "k": 3, "M": 6, "G": 9}
 _METRIC = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 _PREFIXABLE: dict[str, Unit] = {
-    "m": Unit(Fraction(1), 0, (1, 0, 0, 0)),
-    "g": Unit(Fraction(1, 1000), 0, (0, 1, 0, 0)),
-    "s": Unit(Fraction(1), 0, (0, 0, 1, 0)),
-    "N": Unit(Fraction(1), 0, (1, 1, -2, 0)),
-    "Nm": Unit(Fraction(1), 0, (2, 1, -2, 0)),
-    "J": Unit(Fraction(1), 0, (2, 1, -2, 0)),
-    "Pa": Unit(Fraction(1), 0, (-1, 1, -2, 0)),
-    "Hz": Unit(Fraction(1), 0, (0, 0, -1, 0)),
-    "rad": Unit(Fraction(1), 0, (0, 0, 0, 1)),
+    "m": Unit(Fraction(1), 0, (1, 0, 0, 0, 0)),
+    "g": Unit(Fraction(1, 1000), 0, (0, 1, 0, 0, 0)),
+    "s": Unit(Fraction(1), 0, (0, 0, 1, 0, 0)),
+    "N": Unit(Fraction(1), 0, (1, 1, -2, 0, 0)),
+    "Nm": Unit(Fraction(1), 0, (2, 1, -2, 0, 0)),
+    "J": Unit(Fraction(1), 0, (2, 1, -2, 0, 0)),
+    "Pa": Unit(Fraction(1), 0, (-1, 1, -2, 0, 0)),
+    "Hz": Unit(Fraction(1), 0, (0, 0, -1, 0, 0)),
+    "rad": Unit(Fraction(1), 0, (0, 0, 0, 1, 0)),
 }
 _PLAIN: dict[str, Unit] = {
-    "": Unit(Fraction(1), 0, (0, 0, 0, 0)),
-    "%": Unit(Fraction(1, 100), 0, (0, 0, 0, 0)),
-    "ppm": Unit(Fraction(1, 10**6), 0, (0, 0, 0, 0)),
-    "°": Unit(Fraction(1, 180), 1, (0, 0, 0, 1)),
-    "rev": Unit(Fraction(2), 1, (0, 0, 0, 1)),
-    "rpm": Unit(Fraction(2, 60), 1, (0, 0, -1, 1)),
-    "inch": Unit(Fraction(254, 10**4), 0, (1, 0, 0, 0)),
-    "min": Unit(Fraction(60), 0, (0, 0, 1, 0)),
-    "h": Unit(Fraction(3600), 0, (0, 0, 1, 0)),
-    "d": Unit(Fraction(86400), 0, (0, 0, 1, 0)),
-    "vph": Unit(Fraction(1, 7200), 0, (0, 0, -1, 0)),  # a vibration is half an oscillation
-    "gf": Unit(Fraction(980665, 10**8), 0, (1, 1, -2, 0)),
+    "": Unit(Fraction(1), 0, (0, 0, 0, 0, 0)),
+    "%": Unit(Fraction(1, 100), 0, (0, 0, 0, 0, 0)),
+    "ppm": Unit(Fraction(1, 10**6), 0, (0, 0, 0, 0, 0)),
+    "°": Unit(Fraction(1, 180), 1, (0, 0, 0, 1, 0)),
+    "rev": Unit(Fraction(2), 1, (0, 0, 0, 1, 0)),
+    "rpm": Unit(Fraction(2, 60), 1, (0, 0, -1, 1, 0)),
+    "inch": Unit(Fraction(254, 10**4), 0, (1, 0, 0, 0, 0)),
+    "K": Unit(Fraction(1), 0, (0, 0, 0, 0, 1)),
+    "°C": Unit(Fraction(1), 0, (0, 0, 0, 0, 1)),
+    "min": Unit(Fraction(60), 0, (0, 0, 1, 0, 0)),
+    "h": Unit(Fraction(3600), 0, (0, 0, 1, 0, 0)),
+    "d": Unit(Fraction(86400), 0, (0, 0, 1, 0, 0)),
+    "vph": Unit(Fraction(1, 7200), 0, (0, 0, -1, 0, 0)),  # a vibration is half an oscillation
+    "gf": Unit(Fraction(980665, 10**8), 0, (1, 1, -2, 0, 0)),
 }
 PLAIN = "here a plain number is needed, without a unit"
 DIGITS = 1000  # of a number as text

@@ -130,6 +130,7 @@ _REBOUND = (Limit(0.0, 1.0, "must lie between 0 (no rebound) and 1 (nothing lost
 _SHARE = (Limit(0.0, 1.0, "is a share of the work: above 0, at most 1", "low"),)
 _DRIVES = _not_negative("negative damping would drive the body")
 _TURNS = (Limit(-math.inf, math.inf, "must not be 0: it is how often the body turns in one turn", apart=LEAST_RATIO),)
+_COEFFICIENT = Limit(-0.1, 0.1, "is a relative change for each kelvin, at most 10 %/K")
 _BODY = _text("the body it acts on", required=True)
 _AGAINST = _text("another body: it acts between the two, on one and back on the other", absent="the movement")
 
@@ -375,6 +376,34 @@ TIMEGRAPHER: Keys = {
         absent="the oscillator's",
     ),
 }
+AT_HOME = 23.0  # °C, at which the numbers of a scene hold
+THERMAL: Keys = {
+    name: Key(units.PER_KELVIN, doc=f"of the {what}: its relative change for each kelvin", limits=(_COEFFICIENT,))
+    for name, what in {
+        "stiffness": "oscillator's springs",
+        "inertia": "oscillator",
+        "damping": "viscous and quadratic damping of all bodies",
+        "friction": "dry friction of bearings and contacts",
+    }.items()
+}
+WATCH: Keys = {
+    "position": _text("dial up or down (`CH`, `CB`), or the hour that is up, such as `3H` or `10H30`: in place of `gravity`"),
+    "twelve": _angle("direction of 12 h in the movement", default=0.5 * math.pi, absent="90°"),
+    "seen_from": _text("the side from which the movement is drawn", choices=("dial", "back"), absent="dial"),
+    "temperature": Key(
+        units.TEMPERATURE,
+        doc=f"of the movement; all numbers of the scene hold at {AT_HOME:g} °C",
+        default=AT_HOME,
+        limits=(Limit(-60.0, 120.0, "must lie between −60 °C and 120 °C"),),
+        absent=f"{AT_HOME:g} °C",
+    ),
+    "since_wound": Key(
+        units.TIME,
+        doc="how long ago the mainspring was wound: in place of `run_down`",
+        limits=_not_negative("the mainspring was wound before now"),
+    ),
+    "thermal": Key(doc="how its numbers change with the temperature", inner=THERMAL, form=TABLE),
+}
 EXPECTATION: Keys = {
     "value": Key(doc="what a run must give; with `tolerance`"),
     "tolerance": Key(doc="how far it may be off", limits=_above_zero("")[:1]),
@@ -403,7 +432,7 @@ LOCK: Keys = {
 
 DESIGN = "design"  # [design], whose keys are the dimensions of the design it names
 
-TABLES = {"scene": SCENE, "run": RUN, "timegrapher": TIMEGRAPHER, "lock": LOCK}  # [name]
+TABLES = {"scene": SCENE, "run": RUN, "timegrapher": TIMEGRAPHER, "watch": WATCH, "lock": LOCK}  # [name]
 NAMED = {"bodies": BODY, "expect": EXPECTATION, "tolerances": TOLERANCE}  # [name.anything]
 LISTED = {  # [[name]]
     "springs": SPRING,

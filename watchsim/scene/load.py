@@ -22,6 +22,7 @@ from watchsim.scene.read_forces import read_damping, read_line_springs, read_spr
 from watchsim.scene.read_settings import read_expectations, read_heading, read_run, read_timegrapher
 from watchsim.scene.read_tolerances import read_tolerances
 from watchsim.scene.read_trains import note_carriers, read_gears, with_trains
+from watchsim.scene.read_watch import in_state, read_watch
 from watchsim.scene.roles import frequency
 from watchsim.scene.scene import Scene, Written
 from watchsim.scene.toml import file_digest, key_lines, parsed
@@ -57,7 +58,8 @@ def from_mapping(
     if not read.bodies:  # all that names one would be wrong
         mapping = {section: value for section, value in mapping.items() if section not in LISTED}
     bodies, sound = with_trains(mapping, read.bodies, faults), read.sound
-    geared = read_gears(mapping, bodies, heading.gravity, faults)
+    state = read_watch(mapping, faults)
+    geared = read_gears(mapping, bodies, heading.gravity if state.gravity is None else state.gravity, faults)
     bodies = geared.bodies
     springs = read_springs(mapping, bodies, faults)
     torques = read_torques(mapping, bodies, faults)
@@ -97,6 +99,7 @@ def from_mapping(
         reader=changed,
     )
     _check_nominal(scene, faults)
+    scene = in_state(scene, state, faults)
     if "tolerances" in mapping:
         tolerances, correlated = read_tolerances(scene, faults)
         scene = replace(scene, tolerances=tolerances, correlated=correlated)

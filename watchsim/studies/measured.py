@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from watchsim.analysis.listen import NothingHeard, listen
 from watchsim.scene.errors import Fault, SceneError
 from watchsim.scene.keys import nearest
-from watchsim.scene.roles import nominal_frequency, pitch, roles
+from watchsim.scene.roles import nominal_frequency
 from watchsim.scene.scene import Scene
 from watchsim.studies.axes import dimension_of
 from watchsim.units import UnitError, parse
@@ -29,16 +29,7 @@ Array = NDArray[np.float64]
 TIME, ANGLE, SWING = "t_s", "angle_deg", "amplitude_deg"
 READ = {"rate_s_per_d": 1.0, "amplitude_deg": 1.0, "beat_error_ms": 0.05}  # what a timing machine shows, and about how exactly
 ROUGH = {ANGLE: 0.1, SWING: 0.5} | READ
-G = 9.80665  # m/s²
-# Which hour is up, seen from the side that is drawn, 12 at +y and 3 at +x; of a watch that lies nothing pulls in the plane.
-POSITIONS = {
-    "CH": (0.0, 0.0),
-    "CB": (0.0, 0.0),
-    "12H": (0.0, -G),
-    "3H": (-G, 0.0),
-    "6H": (0.0, G),
-    "9H": (G, 0.0),
-}
+STATES = {"position": "watch.position", "wound_h": "watch.since_wound"}  # columns that need not be written as paths
 
 
 @dataclass(frozen=True)
@@ -88,7 +79,7 @@ def _table(path: Path, head: list[str], body: list[list[str]], scene: Scene, mar
     for name in head:
         if name in (TIME, *values, *errors) or (name in states and _is_state(scene, name)):
             continue
-        known = [TIME, ANGLE, *READ, *(f"{one}_error" for one in READ), "position", "wound_h"]
+        known = [TIME, ANGLE, *READ, *(f"{one}_error" for one in READ), *STATES]
         faults.append(Fault(name, f"this column is not known. {nearest(name, known)}", place=place))
     numbers = {name: np.full(len(body), math.nan) for name in (*values, *errors, *([TIME] if decay else []))}
     changes: list[dict[str, Any]] = [{} for _ in body]
@@ -105,6 +96,8 @@ def _table(path: Path, head: list[str], body: list[list[str]], scene: Scene, mar
             except (ValueError, UnitError) as error:
                 words = f'"{cell}" is no number' if name in numbers else str(error)
                 faults.append(Fault(name, words, place=f"{place}, row {i + 2}"))
+            except SceneError as error:
+                faults += (Fault(name, one.message, place=f"{place}, row {i + 2}") for one in error.faults)
     if decay and len(faults) == before:
         times = numbers[TIME]
         if not (np.isfinite(times).all() and times[0] >= 0.0 and (np.diff(times) > 0.0).all()):
@@ -120,37 +113,23 @@ def _table(path: Path, head: list[str], body: list[list[str]], scene: Scene, mar
 
 
 def _is_state(scene: Scene, name: str) -> bool:
-    return name in ("position", "wound_h") or dimension_of(scene, name) is not None
+    return name in STATES or dimension_of(scene, name) is not None
 
 
 def _state(scene: Scene, name: str, cell: str) -> dict[str, Any]:
-    """What a cell changes of the scene; ValueError, UnitError where it cannot be read."""
-    if name == "position":
-        if cell.upper() not in POSITIONS:
-            raise ValueError(f'"{cell}" is no position. There are {", ".join(POSITIONS)}')
-        x, y = POSITIONS[cell.upper()]
-        return {"scene.gravity": [f"{x!r} m/s²", f"{y!r} m/s²"]}
+    """What a cell changes of the scene; ValueError, UnitError where it cannot be read, SceneError where it does not fit."""
+    key = STATES.get(name, name)
     if name == "wound_h":
-        return _run_down(scene, float(cell))
-    dimension = dimension_of(scene, name)
-    assert dimension is not None
-    try:
-        return {name: float(cell)}
-    except ValueError:
-        return {name: parse(cell, dimension)}
-
-
-def _run_down(scene: Scene, hours: float) -> dict[str, Any]:
-    """How far the barrel has turned so many hours after winding: the wheel goes on by a pitch in each oscillation."""
-    found = next(((i, one.mainspring) for i, one in enumerate(scene.torques) if one.mainspring is not None), None)
-    wheel, hertz = roles(scene).wheel, nominal_frequency(scene)
-    each = None if wheel is None else pitch(scene, wheel)
-    if found is None or each is None or hertz is None:
-        raise ValueError(
-            'wound_h needs a mainspring: a torque with over = "barrel" that drives an escape wheel with equal teeth'
-        )
-    i, spring = found
-    return {f"torques.{i}.run_down": hours * 3600.0 * hertz * each / abs(spring.ratio)}
+        value: float | str = 3600.0 * float(cell)
+    elif (dimension := dimension_of(scene, key)) is None:
+        value = cell
+    else:
+        try:
+            value = float(cell)
+        except ValueError:
+            value = parse(cell, dimension)
+    scene.set(key, value)
+    return {key: value}
 
 
 def _recorded(path: Path, scene: Scene, faults: list[Fault]) -> Measured | None:
