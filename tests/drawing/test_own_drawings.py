@@ -1,5 +1,6 @@
 """Do drawings of our own, written by `export` and read back, have what test_pin_lever_drawings and test_real_drawings look for
-in those of strangers: closed layers, units, counts, teeth, and the same matter in DXF and SVG?"""
+in those of strangers: closed layers, units, counts, teeth, the same matter in DXF and SVG, in a single
+part and in the assembly?"""
 
 from __future__ import annotations
 
@@ -7,6 +8,7 @@ import math
 from pathlib import Path
 
 import pytest
+from proposal.assemblies import assembly, scene_of
 
 import watchsim as ws
 from watchsim.cli import main
@@ -67,3 +69,32 @@ def test_the_wheel_has_its_teeth(exported: tuple[str, Path]) -> None:
         tips = sorted(math.atan2(y, x) for x, y in points if math.hypot(x, y) > reach - 1e-7)
         gaps = [b - a for a, b in zip(tips, [*tips[1:], tips[0] + math.tau], strict=True)]
         assert sum(gap > math.pi / TEETH[name] / 2 for gap in gaps) == TEETH[name]
+
+
+PARTS = {  # profile -> its drawings of single parts, each with its pivot as a point, and the bodies that they are of
+    "swiss_lever": {"escape_wheel": "wheel", "lever": "lever", "roller": "balance", "banking": "banking"},
+    "bench_lever": {"wheel": "wheel", "lever": "lever", "balance": "balance", "banking": "banking"},
+}
+
+
+@pytest.mark.parametrize(("profile", "part"), [(profile, part) for profile, parts in PARTS.items() for part in parts])
+def test_single_parts_are_the_same_as_in_the_assembly(profile: str, part: str, tmp_path: Path) -> None:
+    """Layer by layer, of the same mass and of the same inertia about the pivot, wherever it stands there."""
+    scene = scene_of(profile)
+    body = scene.body(PARTS[profile][part])
+    whole = read(assembly(scene, tmp_path / "whole.dxf", "body"))
+    alone = read(ws.profiles_dir() / profile / f"{part}.dxf")
+    (pivot,) = ((x, y) for layer, x, y in alone.points if layer == "PIVOT")
+    assert not whole.findings and not alone.findings
+    pivots = sorted(one.position for one in scene.bodies if one.motion != "fixed")
+    for (_, x, y), place in zip(sorted(whole.points), pivots, strict=True):
+        assert (x, y) == pytest.approx(place, abs=1e-12)
+    layers = {loop.layer for loop in alone.loops}
+    assert layers and {f"{body.name}_{layer}" for layer in layers} <= set(whole.layers)
+    for layer in layers:
+        one, other = (
+            mass_properties([loop for loop in drawing.loops if loop.layer == name], 1.5e-4, 7750.0)
+            for drawing, name in ((alone, layer), (whole, f"{body.name}_{layer}"))
+        )
+        assert other.mass == pytest.approx(one.mass, rel=1e-9, abs=0)
+        assert other.inertia_about(body.position) == pytest.approx(one.inertia_about(pivot), rel=1e-9, abs=0)

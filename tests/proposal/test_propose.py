@@ -19,6 +19,8 @@ from watchsim.scene.load import load
 from watchsim.scene.scene import Scene
 from watchsim.simulation.simulate import simulate
 
+ROOT = Path(__file__).resolve().parents[2]
+OURS = sorted([*ROOT.glob("profiles/*/*.dxf"), *ROOT.glob("tests/data/*.dxf")])
 EXTRA = {  # guessed and not so
     "coaxial": {
         frozenset((("lever", "FORK"), ("balance", "IMPULSE_STONE"))),
@@ -203,15 +205,24 @@ def test_a_real_assembly() -> None:
     assert wanted <= set(proposal.contacts)
 
 
+def gives_a_scene_or_one_refusal(path: Path) -> None:
+    try:
+        assert "scene.toml" in propose([path]).files
+    except NothingToPropose as error:
+        assert str(error)
+
+
 @pytest.mark.slow
 @needs(DRAWINGS / "dxf")
 def test_no_drawing_brings_it_down() -> None:
-    """Every shared drawing gives a scene that loads, or one clear refusal."""
     for path in sorted([*DRAWINGS.glob("dxf/*"), *DRAWINGS.glob("svg/*")]):
-        try:
-            assert "scene.toml" in propose([path]).files
-        except NothingToPropose as error:
-            assert str(error)
+        gives_a_scene_or_one_refusal(path)
+
+
+@pytest.mark.parametrize("path", OURS, ids=lambda path: f"{path.parent.name}/{path.name}")
+def test_no_drawing_of_our_own_brings_it_down(path: Path) -> None:
+    """Single parts of mechanisms, and drawings with faults."""
+    gives_a_scene_or_one_refusal(path)
 
 
 BARE = {  # layers named after features alone, or not at all: parts by profile, each with its layers and its task
