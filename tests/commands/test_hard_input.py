@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import json
 import os
 import shutil
 import subprocess
@@ -38,6 +39,27 @@ def test_a_full_disk_under_the_output_is_one_line_and_status_2(arguments: list[s
         )
     assert done.returncode == 2 and "could not all be written: No space left on device" in done.stderr
     assert "Traceback" not in done.stderr
+
+
+def test_characters_of_others_that_are_not_seen_are_printed_by_their_numbers(tmp_path: Path) -> None:
+    """Controls, and marks that turn a line round; in JSON the name is the same as before. Joined emoji stay as they are."""
+    name = "ab\u202egnp\u2066\u0085\u00ad\u200dx"
+    layer = f'<g inkscape:groupmode="layer" inkscape:label="{name}"><circle r="2"/></g>'
+    spaces = 'xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"'
+    (tmp_path / "a.svg").write_text(f'<svg {spaces} viewBox="0 0 9 9">{layer}</svg>', encoding="utf-8")
+    (tmp_path / "scene.toml").write_text('[bodies."w\\u202E\\u001b[2Jx"]\nmotion = "fixed"\nmass = "1 s"\n', encoding="utf-8")
+
+    def printed(*arguments: str) -> str:
+        command = [sys.executable, "-m", "watchsim", *arguments]
+        environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+        done = subprocess.run(command, env=environment, capture_output=True, check=False, cwd=tmp_path)
+        return (done.stdout + done.stderr).decode("utf-8")
+
+    seen = r"ab\u202egnp\u2066\u0085\u00ad" + "\u200dx"
+    texts = printed("inspect", "a.svg"), printed("inspect", "a.svg", "--json"), printed("check", "scene.toml")
+    assert all(seen in text for text in texts[:2]) and name in json.loads(texts[1])["layers"]
+    assert r"bodies.w\u202e\u001b[2Jx.mass" in texts[2]
+    assert not set("\u202e\u2066\u0085\u00ad\x1b\r").intersection("".join(texts))
 
 
 @pytest.mark.parametrize("value", ["12 " + "(" * 5000 + "mg" + ")" * 5000, "0x" + "f" * 5000, "[0x" + "f" * 5000 + "]"])

@@ -10,6 +10,7 @@ import json
 import math
 import os
 import platform
+import re
 import shlex
 import sys
 import tempfile
@@ -50,6 +51,22 @@ class _Patient(io.FileIO):
             return len(memoryview(content))
 
 
+# Names in drawings and scenes are others': a character that turns a line round or moves the cursor (all controls, marks of
+# direction and invisible ones but the joiners of words and emoji) is printed by its number, as JSON and TOML write it, too.
+# A carriage return is our own at either end of what is written.
+UNSEEN = re.compile(
+    "[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\xad\u061c\u180e\u200b\u200e\u200f\u2028-\u202e\u2060-\u206f\ufeff\ufff9-\ufffb]"
+    "|(?<!^)\r(?!\n?$)"
+)
+
+
+class _Escaped(io.TextIOWrapper):
+    """Text whose characters all are seen."""
+
+    def write(self, text: str) -> int:
+        return super().write(UNSEEN.sub(lambda one: f"\\u{ord(one[0]):04x}", text))
+
+
 def lost_output() -> str:
     """Why not all that was printed could be written; empty where it was."""
     for stream in (sys.stdout, sys.stderr):
@@ -68,7 +85,7 @@ def open_streams() -> None:
         except OSError:  # closed from the start
             raw = _Patient(os.devnull, "w")
         lines = old is not None and (raw.isatty() or name == "stderr")
-        stream = io.TextIOWrapper(io.BufferedWriter(raw), encoding="utf-8", errors="replace", line_buffering=lines)
+        stream = _Escaped(io.BufferedWriter(raw), encoding="utf-8", errors="replace", line_buffering=lines)
         setattr(sys, name, stream)
 
 
@@ -93,8 +110,7 @@ def say(words: str) -> None:
 
 def print_json(value: Any) -> None:
     """One JSON value on stdout."""
-    json.dump(value, sys.stdout, indent=1, ensure_ascii=False, allow_nan=False)
-    print(flush=True)
+    print(json.dumps(value, indent=1, ensure_ascii=False, allow_nan=False), flush=True)
 
 
 class Progress:
