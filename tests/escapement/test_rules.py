@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from dataclasses import replace
 
 import pytest
@@ -111,6 +112,10 @@ def test_the_sheet(ending, tmp_path, capsys):
     start = path.read_bytes()[:400]
     assert {"pdf": b"%PDF", "svg": b"<svg"}[ending] in start + path.read_bytes()[:2000]
     assert "entry stone" in capsys.readouterr().out
+    first = path.read_bytes()
+    assert not re.search(rb"<dc:date>|CreationDate", first)
+    assert main(["check", str(SWISS), "--sheet", str(path), "--width", "85 mm"]) == FINE
+    assert path.read_bytes() == first
 
 
 def test_the_picture_has_the_sheet_beside_it(tmp_path, capsys):

@@ -5,7 +5,6 @@ One page 170 mm wide for print, or 85 mm for one column of text.
 
 from __future__ import annotations
 
-import io
 import math
 import os
 from collections.abc import Callable
@@ -29,7 +28,7 @@ from watchsim.geometry.primitives import Point
 from watchsim.mechanism.compile import Compiled
 from watchsim.render.palette import INK
 from watchsim.render.parts import Posed
-from watchsim.render.style import COLUMN, FULL, MM
+from watchsim.render.style import COLUMN, FULL, MM, save
 from watchsim.scene.scene import Scene
 from watchsim.simulation.trajectory import Array
 from watchsim.storage.write import write_file
@@ -410,10 +409,8 @@ def _places(count: int, width: float, shape: float) -> tuple[list[tuple[float, f
 
 
 def write_sheet(path: str | os.PathLike[str], figure: Figure) -> None:
-    """Save it as PNG, SVG or PDF, by the ending of the name."""
-    made = io.BytesIO()  # matplotlib has no sentence for a PDF that cannot be written
-    figure.savefig(made, format=Path(path).suffix[1:].lower())
-    write_file(Path(path), lambda scratch: scratch.write_bytes(made.getvalue()), "the sheet")
+    """Save it as PNG, SVG or PDF, by the ending of the name; the same sheet gives the same bytes."""
+    write_file(Path(path), lambda place: save(figure, place), "the sheet")
 
 
 def _views(views: Views) -> list[Callable[[Axes, float], None]]:
