@@ -1,11 +1,11 @@
 """The pictures of the pages, and the pages that hold little else.
 
-    python scripts/draw_pictures.py kinds|laws|beat|mechanisms|movies|gallery|plots|tolerances|shrink [profile]
+    python scripts/draw_pictures.py kinds|laws|beat|mechanisms|movies|gallery|plots|tolerances|positions|shrink [profile]
 
 kinds: the kinds of contact (docs/theory/contact-geometry.md); laws: the laws of contact, the expansion read off the solver
 itself; beat: angles and velocities of the Swiss lever; mechanisms, movies: those of docs/guide/mechanisms.md, of one profile
 or all; gallery, plots: docs/guide/gallery.md and plots.md, from the commands that they show;
-tolerances: the studies of docs/guide/tolerances.md. shrink goes last.
+tolerances: the studies of docs/guide/tolerances.md; positions: the dials of docs/guide/positions.md. shrink goes last.
 """
 
 from __future__ import annotations
@@ -564,6 +564,12 @@ def tolerances() -> None:
         print(f"{scene.stem}: {study.message}")
 
 
+def positions() -> None:
+    """The dials of docs/guide/positions.md."""
+    found = ws.positions(ROOT / "docs" / "guide" / "positions" / "swiss_lever.toml", workers=2)
+    ws.plot_positions(found).savefig(IMAGES / "positions.png", dpi=TOLERANCE_DPI)
+
+
 def shrink() -> None:
     """PNG files with a palette of 256 colours where no pixel changes by more than can be seen (24 of 255, 0.3 on average)."""
     for path in IMAGES.rglob("*.png"):
@@ -584,6 +590,7 @@ PARTS = {
     "gallery": gallery,
     "plots": plots,
     "tolerances": tolerances,
+    "positions": positions,
     "shrink": shrink,
 }
 OF_PROFILES = {"mechanisms": mechanisms, "movies": movies}

@@ -55,7 +55,7 @@ PAGES = {
         ],
     ),
     "studies": (
-        "Limit cycles, sweeps, sensitivities, tolerances, better scenes, fits",
+        "Limit cycles, sweeps, sensitivities, positions, tolerances, better scenes, fits",
         [
             "steady",
             "Cycle",
@@ -65,6 +65,8 @@ PAGES = {
             "watchsim.studies.sweep:Sweep",
             "sensitivity",
             "watchsim.studies.sensitivity:Sensitivity",
+            "positions",
+            "watchsim.studies.positions:Positions",
             "tolerance",
             "ToleranceStudy",
             "merge",
@@ -79,7 +81,7 @@ PAGES = {
         [
             *("plot_kinematics", "plot_phases", "plot_timeline", "plot_torque", "plot_phase_portrait", "plot_forces"),
             *("plot_energy", "plot_timing", "plot_tape", "plot_sweep", "plot_comparison", "plot_sensitivity", "plot_tolerance"),
-            *("plot_front", "plot_fit"),
+            *("plot_front", "plot_fit", "plot_positions"),
             *("movie", "frame", "show", "sound", "report", "listen", "watchsim.analysis.listen:Heard"),
         ],
     ),

@@ -35,6 +35,7 @@ _HOMES = {
     "compare": "watchsim.studies.compare",
     "sweep": "watchsim.studies.sweep",
     "sensitivity": "watchsim.studies.sensitivity",
+    "positions": "watchsim.studies.positions",
     "tolerance": "watchsim.studies.tolerance",
     "ToleranceStudy": "watchsim.studies.tolerance_result",
     "merge": "watchsim.studies.tolerance",
@@ -53,6 +54,7 @@ _HOMES = {
     "plot_phase_portrait": "watchsim.render.kinematics_plot",
     "plot_torque": "watchsim.render.energy_plot",
     "plot_forces": "watchsim.render.force_plot",
+    "plot_positions": "watchsim.render.positions_plot",
     "plot_fit": "watchsim.render.study_plot",
     "plot_front": "watchsim.render.study_plot",
     "plot_sensitivity": "watchsim.render.study_plot",
@@ -95,6 +97,7 @@ if TYPE_CHECKING:
     from watchsim.render.movie import movie as movie
     from watchsim.render.phase_plots import plot_phases as plot_phases
     from watchsim.render.phase_plots import plot_timeline as plot_timeline
+    from watchsim.render.positions_plot import plot_positions as plot_positions
     from watchsim.render.study_plot import plot_fit as plot_fit
     from watchsim.render.study_plot import plot_front as plot_front
     from watchsim.render.study_plot import plot_sensitivity as plot_sensitivity
@@ -115,6 +118,7 @@ if TYPE_CHECKING:
     from watchsim.studies.cycle import Cycle as Cycle
     from watchsim.studies.fit import fit as fit
     from watchsim.studies.improve import improve as improve
+    from watchsim.studies.positions import positions as positions
     from watchsim.studies.sensitivity import sensitivity as sensitivity
     from watchsim.studies.steady import steady as steady
     from watchsim.studies.sweep import sweep as sweep

@@ -78,6 +78,7 @@ COMMANDS = (
     "steady",
     "compare",
     "sweep",
+    "positions",
     "tolerance",
     "merge",
     "improve",

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from watchsim.pages.html import Content, Markup, element, image, joined, section, table
 from watchsim.pages.report_page import check_page
@@ -27,13 +29,8 @@ LOOK = Markup(
 
 def tolerance_page(study: ToleranceStudy, path: str | Path) -> Path:
     """Write the study as one self-contained HTML file; ValueError for a path with another ending, OSError where it fails."""
-    target = check_page(path)
-    figure = plot_tolerance(study)
-    drawn = io.BytesIO()
-    figure.savefig(drawn, format="png", dpi=DOTS / figure.get_figwidth())
-    picture = image(drawn.getvalue(), f"plots of the study: {study.message}", round(figure.get_figwidth() / MM * 6))
+    picture = drawn(plot_tolerance(study), f"plots of the study: {study.message}")
     parts = [
-        element("h1", study.title),
         element("p", f"{study.message}.", class_="yield"),
         _yields(study),
         section("spread", "What the watches do", _spread(study), picture),
@@ -41,8 +38,21 @@ def tolerance_page(study: ToleranceStudy, path: str | Path) -> Path:
         section("contributions", "Which dimension decides it", *_contributions(study)),
         section("worst", "The worst of them", _worst(study)),
     ]
-    head = element("head", element("meta", charset="utf-8"), element("title", study.title), element("style", LOOK))
-    text = joined([Markup("<!doctype html>"), element("html", head, element("body", *parts), lang="en")])
+    return written(study.title, parts, path)
+
+
+def drawn(figure: Any, words: str) -> Markup:
+    """A figure in the page; `words` for readers that show no pictures."""
+    made = io.BytesIO()
+    figure.savefig(made, format="png", dpi=DOTS / figure.get_figwidth())
+    return image(made.getvalue(), words, round(figure.get_figwidth() / MM * 6))
+
+
+def written(title: str, parts: Sequence[Content], path: str | Path) -> Path:
+    """The page of a study with these parts below its title, as one file."""
+    target = check_page(path)
+    head = element("head", element("meta", charset="utf-8"), element("title", title), element("style", LOOK))
+    text = joined([Markup("<!doctype html>"), element("html", head, element("body", element("h1", title), *parts), lang="en")])
     write_file(target, lambda place: place.write_bytes(text.encode("utf-8", "replace")), "the page")
     return target
 

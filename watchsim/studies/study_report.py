@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import math
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
@@ -11,11 +12,12 @@ from typing import Any
 from watchsim.results.tables import cell
 from watchsim.studies.axes import Axis, slug
 from watchsim.studies.point import OUTPUTS, Output
+from watchsim.studies.positions import SURE, Positions
 from watchsim.studies.sampling import plain_values
 from watchsim.studies.sensitivity import Effect, Sensitivity
 from watchsim.studies.sweep import Sweep
 from watchsim.studies.tolerance_result import ToleranceStudy, failing
-from watchsim.units import to
+from watchsim.units import signed, to
 
 Table = dict[str, list[Any]]  # column -> values
 
@@ -143,6 +145,106 @@ def tolerance_text(found: ToleranceStudy) -> str:
     return "\n".join([*lines, f"  a sample takes {1e3 * sum(found.seconds.values()):.3g} ms of one processor: {split}"])
 
 
+def positions_table(found: Positions) -> Table:
+    """One line for each reading."""
+    return {name: [row[name] for row in found.rows] for name in (found.rows[0] if found.rows else ("position",))}
+
+
+POSITION_HEAD = ("rate s/d", "amplitude °", "beat error ms")
+SUMMARY = {
+    "X": "mean of all",
+    "D": "largest less smallest",
+    "DVH": "upright less lying",
+    "DVm": "largest less smallest upright",
+    "Di": "mean less the mean just wound",
+}
+
+
+def positions_text(found: Positions) -> str:
+    """As a timing machine prints it: a block for each temperature, its windings side by side; then poise error and ISO 3159."""
+    lines = [found.title]
+    for warmth in dict.fromkeys(state[0] for state in found.states):
+        states = [state for state in found.states if state[0] == warmth]
+        heads = [name for state in states for name in (f"{winding(state)}: {POSITION_HEAD[0]}", *POSITION_HEAD[1:])]
+        body = positions_rows(found, states)
+        lines += ["", *aligned([f"{warmth:g} °C", *heads, ""], [[*row, ""] for row in body])]
+    lines += [
+        "",
+        f"  {poise_words(found)}",
+        "",
+        *aligned(("ISO 3159", "", "category 1", "", "category 2", ""), criteria_rows(found)),
+    ]
+    reasons = dict.fromkeys(f"{row['position']}: {row['message']}" for row in found.rows if row["message"])
+    return "\n".join([*lines, *(f"  {reason}" for reason in list(reasons)[:ENDS])])
+
+
+def winding(state: tuple[float, float]) -> str:
+    """Of a state: "wound", "after 24 h"."""
+    return "wound" if state[1] == 0.0 else f"after {state[1]:g} h"
+
+
+def positions_rows(found: Positions, states: Sequence[tuple[float, float]]) -> list[list[str]]:
+    """A row for each position, then one for each number that follows; three columns for each state."""
+    rows = []
+    for name in dict.fromkeys(row["position"] for row in found.rows):
+        readings = [found.at(state).get(name, {}) for state in states]
+        cells = [_number(one.get(column), places) for one in readings for column, places in READ_TO.items()]
+        rows.append([name, *cells])
+    summaries = [found.summary(state) for state in states]
+    for name in SUMMARY:
+        if any(one[name] is not None for one in summaries):
+            rows.append([name, *(cell for one in summaries for cell in (_number(one[name], 2), "", ""))])
+    return rows
+
+
+READ_TO = {"rate_s_per_d": 2, "amplitude_deg": 2, "beat_error_ms": 4}  # decimals
+
+
+def poise_words(found: Positions) -> str:
+    """The poise error by the rates, and the true one."""
+    poise, balance = found.poise, found.balance
+    if poise is None or balance is None:
+        return "poise error: not known without three upright positions in which a sprung balance ticks"
+    true = f"{1e11 * balance.amount:.4g} µg·cm at {math.degrees(balance.direction) % 360.0:.4g}°"
+    if poise.error > SURE * poise.amount:
+        seen = f"below {1e11 * poise.error:.2g} µg·cm, which these rates cannot show"
+        return f"poise error: {seen}; the scene's own is {true if balance.amount else 'none'}"
+    place = f"{math.degrees(poise.direction) % 360.0:.4g}° in the balance's drawing"
+    amount = f"{1e11 * poise.amount:.4g} µg·cm ± {1e11 * poise.error:.1g} µg·cm"
+    return f"poise error: {amount}, to be removed at {place}; the scene's own is {true}"
+
+
+CRITERIA = {
+    "mean_daily_rate": "mean daily rate",
+    "mean_variation": "mean variation of rates",
+    "greatest_variation": "greatest variation of rates",
+    "vertical_less_horizontal": "6H less CH",
+    "greatest_deviation": "greatest deviation from the mean",
+    "thermal_variation": "variation with temperature, by K",
+    "rate_resumption": "resumption of the rate",
+}
+
+
+def criteria_rows(found: Positions) -> list[list[str]]:
+    """Criterion, value, and limits with the verdict for each category."""
+    both = [found.iso3159(category) for category in (1, 2)]
+    rows = []
+    for name, label in CRITERIA.items():
+        value = both[0][name].value
+        cells = [cell for one in both for cell in (_limits(one[name].limit), VERDICTS[one[name].ok])]
+        rows.append(
+            [label, _number(value, 2), *cells[:-1], cells[-1] if value is not None else f"{cells[-1]}: {both[0][name].why}"]
+        )
+    return rows
+
+
+VERDICTS = {True: "fine", False: "missed", None: "not judged"}
+
+
+def _limits(limit: tuple[float, float]) -> str:
+    return (f"{limit[0]:+g} to {limit[1]:+g}" if limit[0] else f"at most {limit[1]:g}").replace("-", "−")
+
+
 def _short(value: float | None) -> str:
     return "" if value is None else f"{value:.5g}".replace("-", "−")
 
@@ -167,7 +269,7 @@ def _key(axis: Axis, value: Any) -> str:
 
 
 def _number(value: float | None, decimals: int) -> str:
-    return "" if value is None else f"{value:.{decimals}f}".replace("-", "−")
+    return "" if value is None else signed(value, decimals)
 
 
 def _effect(effect: Effect, column: str) -> str:
