@@ -14,10 +14,6 @@ if TYPE_CHECKING:
 
 
 HELP = "what was changed between scenes or runs, and what came of it"
-LABELS = {"amplitude_deg": "amplitude", "rate_s_per_d": "rate", "beat_error_ms": "beat error", "period_s": "period"}
-LABELS |= {"power_in_W": "power put in", "friction_W": "lost to friction", "damping_W": "lost to damping"}
-LABELS |= {"impacts_W": "lost in impacts"}
-DIGITS, LONGEST = 6, 40  # of a number whose error is not known; letters of a value
 NOTE = "± is the error of the difference: of limit cycles that of the computation, of runs how much their beats scatter."
 
 
@@ -78,61 +74,18 @@ def plain_numbers(found: Comparison) -> dict[str, Any]:
 
 def text(found: Comparison) -> str:
     """Two tables for people: what was changed, and what came of it."""
+    from watchsim.studies.compare import changed_rows, result_rows
     from watchsim.studies.study_report import aligned
 
     names = [side.name for side in found.sides]
-    changed = [[key, *map(_value, values), ""] for key, values in found.changed.items()]
+    changed = [[*row, ""] for row in changed_rows(found)]
     lines = aligned(["changed", *names, ""], changed) if changed else ["  Nothing was changed in the scene."]
-    body = [_outcome(name, one.values, one.errors, one.difference, one.error) for name, one in found.outputs.items()]
+    body = [[*row, ""] for row in result_rows(found)]
     lines += ["", *aligned(["result", *names, "difference", "±", ""], body)]
     lines += [f"  {side.name}: {side.message}" for side in found.sides if side.message]
     if any(one.error is not None for one in found.outputs.values()):
         lines.append(f"  {NOTE}")
     return "\n".join(lines)
-
-
-def _outcome(
-    name: str, values: Sequence[Any], errors: Sequence[float | None], difference: float | None, error: float | None
-) -> list[str]:
-    """A line: the label with its unit, every value to the digits that its error leaves, the difference and its error."""
-    unit, factor = _unit(name)
-    label = LABELS.get(name, name.removesuffix("_deg").removesuffix("_mm").replace("_", " "))
-    shown = [_number(value, one, factor) for value, one in zip(values, errors, strict=True)]
-    whole = "" if difference is None else _number(difference, error, factor, sign=True)
-    return [f"{label} ({unit})" if unit else label, *shown, whole, "" if error is None else f"{factor * error:.1g}", ""]
-
-
-def _unit(name: str) -> tuple[str, float]:
-    """The unit that an output is shown in, and what to multiply it by."""
-    from watchsim.studies.compare import MICRO, UNITS
-
-    unit = next((unit for ending, unit in UNITS.items() if name.endswith(ending)), "")
-    return ("µW", MICRO) if unit == "W" else (unit, 1.0)
-
-
-def _number(value: Any, error: float | None, factor: float, sign: bool = False) -> str:
-    import math
-
-    if value is None or isinstance(value, str):
-        return value or "none"
-    plus = "+" if sign else ""
-    if error is None or not 0.0 < factor * error < math.inf:
-        return f"{factor * value:{plus}.{DIGITS}g}".replace("-", "−")
-    decimals = min(max(0, 1 - math.floor(math.log10(factor * error))), 9)
-    return f"{factor * value:{plus}.{decimals}f}".replace("-", "−")
-
-
-def _value(value: Any) -> str:
-    """As the scene has it, without digits that only rounding explains; "none" where it has no such key."""
-    from watchsim.units import UnitError, split
-
-    shown = "none" if value is None else str(value)
-    try:
-        number, unit = split(value)
-        shown = f"{float(number.replace('−', '-')):.9g}{shown[len(number) :]}" if unit else shown
-    except (UnitError, ValueError, TypeError):
-        pass
-    return shown if len(shown) <= LONGEST else f"{shown[:LONGEST]}…"
 
 
 def _draw(found: Comparison, target: Path, silent: bool) -> None:

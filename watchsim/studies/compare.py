@@ -23,7 +23,7 @@ from watchsim.scene.toml import digest, parsed
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.trajectory import Trajectory
 from watchsim.studies.steady import steady
-from watchsim.units import UnitError, parse
+from watchsim.units import UnitError, parse, split
 
 SAME = 1e-12  # of a value: what writing it in another unit may change
 TIMED = {"amplitude_deg": "°", "rate_s_per_d": "s/d", "beat_error_ms": "ms", "period_s": "s"}
@@ -221,3 +221,58 @@ def _same(scene: Scene, key: str, one: Any, other: Any) -> bool:
     except UnitError:
         return False
     return abs(first - second) <= SAME * max(abs(first), abs(second))
+
+
+# How is a difference put for people?
+
+LABELS = {"amplitude_deg": "amplitude", "rate_s_per_d": "rate", "beat_error_ms": "beat error", "period_s": "period"}
+LABELS |= {"power_in_W": "power put in", "friction_W": "lost to friction", "damping_W": "lost to damping"}
+LABELS |= {"impacts_W": "lost in impacts"}
+DIGITS, LONGEST = 6, 40  # of a number whose error is not known; letters of a value
+
+
+def changed_rows(found: Comparison) -> list[list[str]]:
+    """Key and its value on every side, to read."""
+    return [[key, *map(_value, values)] for key, values in found.changed.items()]
+
+
+def result_rows(found: Comparison) -> list[list[str]]:
+    """Label with unit, the value of every side to the digits that its error leaves, the difference and its error, to read."""
+    return [_outcome(name, one.values, one.errors, one.difference, one.error) for name, one in found.outputs.items()]
+
+
+def _outcome(
+    name: str, values: Sequence[Any], errors: Sequence[float | None], difference: float | None, error: float | None
+) -> list[str]:
+    unit, factor = _unit(name)
+    label = LABELS.get(name, name.removesuffix("_deg").removesuffix("_mm").replace("_", " "))
+    shown = [_number(value, one, factor) for value, one in zip(values, errors, strict=True)]
+    whole = "" if difference is None else _number(difference, error, factor, sign=True)
+    return [f"{label} ({unit})" if unit else label, *shown, whole, "" if error is None else f"{factor * error:.1g}"]
+
+
+def _unit(name: str) -> tuple[str, float]:
+    """The unit that an output is shown in, and what to multiply it by."""
+    unit = next((unit for ending, unit in UNITS.items() if name.endswith(ending)), "")
+    return ("µW", MICRO) if unit == "W" else (unit, 1.0)
+
+
+def _number(value: Any, error: float | None, factor: float, sign: bool = False) -> str:
+    if value is None or isinstance(value, str):
+        return value or "none"
+    plus = "+" if sign else ""
+    if error is None or not 0.0 < factor * error < math.inf:
+        return f"{factor * value:{plus}.{DIGITS}g}".replace("-", "−")
+    decimals = min(max(0, 1 - math.floor(math.log10(factor * error))), 9)
+    return f"{factor * value:{plus}.{decimals}f}".replace("-", "−")
+
+
+def _value(value: Any) -> str:
+    """As the scene has it, without digits that only rounding explains; "none" where it has no such key."""
+    shown = "none" if value is None else str(value)
+    try:
+        number, unit = split(value)
+        shown = f"{float(number.replace('−', '-')):.9g}{shown[len(number) :]}" if unit else shown
+    except (UnitError, ValueError, TypeError):
+        pass
+    return shown if len(shown) <= LONGEST else f"{shown[:LONGEST]}…"
