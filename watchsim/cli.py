@@ -73,6 +73,7 @@ COMMANDS = (
     "plot",
     "movie",
     "report",
+    "live",
     "sound",
     "listen",
     "steady",

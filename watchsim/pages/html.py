@@ -166,17 +166,23 @@ SCRIPTS = (
 )
 
 
-def page(title: str, parts: Mapping[str, Markup | str | None], data: Mapping[str, Any]) -> str:
-    """The whole page; `parts` go into the places that the template names, escaped where they are no markup."""
+def page(
+    title: str, parts: Mapping[str, Markup | str | None], data: Mapping[str, Any] | None, live: Markup | None = None
+) -> str:
+    """The whole page; `parts` go into the places that the template names, escaped where they are no markup.
+
+    `live` is the panel of a page that gets its data later, from the server it came from (data None), and may ask nobody else.
+    """
     licence, library, library_style = map(_asset, PLOTTING)
-    script = "".join((f"/*\n{licence}*/\n", library, *(_asset(f"{name}.js") for name in SCRIPTS)))
+    scripts, styles = ((*SCRIPTS, "live"), ("page", "live")) if live else (SCRIPTS, ("page",))
+    script = "".join((f"/*\n{licence}*/\n", library, *(_asset(f"{name}.js") for name in scripts)))
     script = f'"use strict";\n(() => {{\n{script}}})();\n'
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode("ascii")
     template = Template(_asset("page.html"))
     places: dict[str, object] = {name: joined(part) for name, part in parts.items()}
-    return template.substitute(
-        places, title=joined(title), digest=digest, style=library_style + _asset("page.css"), script=script, data=embedded(data)
-    )
+    places |= {"live": live or "", "connect": " connect-src 'self';" if live else ""}
+    style = "".join((library_style, *(_asset(f"{name}.css") for name in styles)))
+    return template.substitute(places, title=joined(title), digest=digest, style=style, script=script, data=embedded(data))
 
 
 def _asset(name: str) -> str:

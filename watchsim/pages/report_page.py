@@ -58,35 +58,36 @@ def check_page(path: str | os.PathLike[str]) -> Path:
 def page_text(run: Trajectory, window: Sequence[float] | None = None, numbers: Mapping[str, Any] | None = None) -> str:
     """The page as text; see `report`."""
     known = plain(summary(run) if numbers is None else numbers)
-    span, moved, off = _motion(run, window)
-    size = picture_size(run, span)
-    found = phases_within(run, span)
-    opening = _opening(found, span)
-    parts = drawn_parts(run.scene, size)
-    data = player_data(run, span, moved, parts, found, opening)
+    places, data = page_parts(run, window, known)
     files, left_out = packed_files(run, known)
-    data["files"] = files
-    places = {
-        "poster": poster(run, span, parts, opening),
-        "verdict": verdict(known) or Markup(""),
-        "lead": _lead(run, span),
-        "sheet": sheet(run, known),
-        "saved": _saved(left_out),
-        "made": _made(known, off),
-    }
-    return page(run.scene.title, places, data)
+    return page(run.scene.title, {**places, "saved": _saved(left_out)}, {**data, "files": files})
 
 
 def player_text(run: Trajectory, window: Sequence[float] | None = None) -> str:
     """A page with the player and the plots only, for a frame in another page."""
+    places, data = page_parts(run, window)
+    return page(run.scene.title, {**places, **dict.fromkeys(("poster", "lead"), ""), "sheet": ALONE}, data)
+
+
+def page_parts(
+    run: Trajectory, window: Sequence[float] | None = None, numbers: Mapping[str, Any] | None = None
+) -> tuple[dict[str, Markup | str], dict[str, Any]]:
+    """What stands in the places of the page, and the data of its player, without files; `numbers` fill the timing sheet."""
     span, moved, off = _motion(run, window)
-    size = picture_size(run, span)
     found = phases_within(run, span)
     opening = _opening(found, span)
-    data = player_data(run, span, moved, drawn_parts(run.scene, size), found, opening)
+    parts = drawn_parts(run.scene, picture_size(run, span))
+    data = player_data(run, span, moved, parts, found, opening)
     data["files"] = {"entries": [], "data": ""}
-    places = dict.fromkeys(("poster", "verdict", "lead", "saved"), Markup(""))
-    return page(run.scene.title, {**places, "sheet": ALONE, "made": _made({}, off)}, data)
+    places = {
+        "poster": poster(run, span, parts, opening),
+        "verdict": (verdict(numbers) if numbers else None) or Markup(""),
+        "lead": _lead(run, span),
+        "sheet": sheet(run, numbers) if numbers else Markup(""),
+        "saved": Markup(""),
+        "made": _made(numbers or {}, off),
+    }
+    return places, data
 
 
 def _motion(run: Trajectory, window: Sequence[float] | None) -> tuple[Window, list[Channel], float]:

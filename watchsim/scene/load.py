@@ -207,7 +207,7 @@ def load(path: str | Path) -> Scene:
 
 def load_set(path: str | Path, changes: Mapping[str, object]) -> Scene:
     """The same with the keys and values of --set in it, put there before anything is judged: they may replace faulty ones."""
-    path = _scene_file(Path(path))
+    path = scene_file(Path(path))
     text, mapping = _read(path)
     faults = Faults(str(path), key_lines(text), changed=frozenset(changes), by="--set")
     later = {key: value for key, value in changes.items() if unwritten(mapping, key)}
@@ -228,7 +228,8 @@ def _read(path: Path) -> tuple[str, dict[str, Any]]:
         raise SceneError([_syntax_fault(path, text, str(error))]) from error
 
 
-def _scene_file(path: Path) -> Path:
+def scene_file(path: Path) -> Path:
+    """The file itself, or of a folder the scene in it; SceneError where that holds none."""
     if not path.is_dir():
         return path
     found = next((path / name for name in SCENE_FILES if (path / name).is_file()), None)

@@ -236,18 +236,23 @@ def changed_rows(found: Comparison) -> list[list[str]]:
     return [[key, *map(_value, values)] for key, values in found.changed.items()]
 
 
-def result_rows(found: Comparison) -> list[list[str]]:
-    """Label with unit, the value of every side to the digits that its error leaves, the difference and its error, to read."""
-    return [_outcome(name, one.values, one.errors, one.difference, one.error) for name, one in found.outputs.items()]
+def result_rows(found: Comparison, finest: float = 0.0) -> list[list[str]]:
+    """Label with unit, the value of every side to the digits that its error leaves, the difference and its error, to read.
+
+    No error counts as less than `finest` of its value.
+    """
+    return [_outcome(name, one, finest) for name, one in found.outputs.items()]
 
 
-def _outcome(
-    name: str, values: Sequence[Any], errors: Sequence[float | None], difference: float | None, error: float | None
-) -> list[str]:
+def _outcome(name: str, outcome: Outcome, finest: float) -> list[str]:
+    values, difference, error = outcome.values, outcome.difference, outcome.error
+    sizes = [abs(value) for value in values if isinstance(value, float)]
+    least = finest * max(sizes, default=0.0)
+    errors = [None if one is None else max(one, least) for one in outcome.errors]
     unit, factor = _unit(name)
     label = LABELS.get(name, name.removesuffix("_deg").removesuffix("_mm").replace("_", " "))
     shown = [_number(value, one, factor) for value, one in zip(values, errors, strict=True)]
-    whole = "" if difference is None else _number(difference, error, factor, sign=True)
+    whole = "" if difference is None else _number(difference, error and max(error, least), factor, sign=True)
     return [f"{label} ({unit})" if unit else label, *shown, whole, "" if error is None else f"{factor * error:.1g}"]
 
 

@@ -2,21 +2,14 @@
 const $ = (id) => document.getElementById(id);
 const root = document.documentElement;
 root.classList.add("scripted");
-const data = JSON.parse($("data").textContent);
-
-const motion = new Motion(data), view = new View(data), scenery = new Scenery(data), contacts = new Contacts(data), clock = new Clock(data), sound = new Sound(data), solids = new Solids(data, $("solid")), names = new Names(data);
-const player = new Player(data, { motion, view, scenery, solids, names, contacts, clock, sound });
-const curves = new Curves(data, motion, contacts, view);
-const plots = new Plots($("plots"), data, curves, (t) => { player.toggle(false); player.seek(t); });
-const strip = new Strip($("plots"), data, sound, (t) => { player.toggle(false); player.seek(t); });
+let data, motion, view, scenery, contacts, clock, sound, solids, names, player, curves, plots, strip, span;
 const stage = $("stage"), ctx = stage.getContext("2d");
 let look = {}, dirty = true, fps = 0, drawn = 0; // frames a second, and ms that the last one took to draw
-player.changed = () => { dirty = true; };
 
 // Colours come from the style sheet, so that page and pictures change together.
 const readLook = () => {
   const style = getComputedStyle(root), colour = (name) => style.getPropertyValue(`--${name}`).trim(), dark = root.dataset.theme === "dark";
-  const body = data.bodies[plots.body ?? 0];
+  const body = data && data.bodies[plots.body ?? 0];
   look = {
     dark, paper: colour("card"), ink: colour("ink"), faint: colour("faint"), grid: colour("line"), edgeLine: colour("edge"), accent: colour("accent"), cursor: colour("cursor"),
     contact: colour("contact"), force: colour("force"), shade: colour("shade"), ground: dark ? "#a9a498" : "#55524b", edge: dark ? "#d9d6cf" : "#23272c",
@@ -26,11 +19,12 @@ const readLook = () => {
 const setTheme = (name) => {
   root.dataset.theme = name;
   $("theme").setAttribute("aria-pressed", String(name === "dark"));
-  readLook(); plots.stale(); dirty = true;
+  readLook();
+  if (plots) plots.stale();
+  dirty = true;
 };
 
 // Time as the plots tell it.
-const span = player.end - player.start;
 const timeText = (t) => {
   const visible = plots.range[1] - plots.range[0], { times } = player, i = upTo(times, t);
   let digits = clamp(3 - Math.floor(Math.log10(visible)), 0, 9);
@@ -93,7 +87,8 @@ const words = () => {
 
 // A button for every part: its colour, its name, what it reads now.
 const MANY = 60;
-const chips = data.bodies.slice(0, MANY).map((body, b) => {
+let chips = [];
+const chipOf = (body, b) => {
   const button = document.createElement("button"), square = document.createElement("i"), value = document.createElement("small"), rows = motion.rows[b];
   button.type = "button"; button.title = `Fade ${body.name}`;
   square.style.background = body.fill; square.style.borderColor = body.line;
@@ -104,7 +99,53 @@ const chips = data.bodies.slice(0, MANY).map((body, b) => {
   const slide = body.motion === "slide", k = body.motion === "free" ? 2 : 0, factor = slide ? 1e3 : DEGREES;
   const within = (angle) => (body.round ? ((angle % 360) + 360) % 360 : angle), unit = slide ? " mm" : body.round ? "° mod 360°" : "°";
   return { b, button, value, read: (t) => `${minus(within(factor * rows.at(t, k, 0)).toFixed(slide ? 3 : body.round ? 1 : 2))}${unit}` };
-});
+};
+
+// Show a run in place of the one before, if there is one: time, view, what is chosen and pressed stay as they are.
+const open = (told) => {
+  const old = player && { data, view, player, plots, sound, solids, names };
+  if (old) { for (const panel of plots.panels) panel.chart.destroy(); strip.box.remove(); }
+  if (old && solids.gl) $("solid").replaceWith($("solid").cloneNode()); // what the card holds goes with its canvas
+  data = told;
+  motion = new Motion(data); view = new View(data); scenery = new Scenery(data); contacts = new Contacts(data); clock = new Clock(data);
+  sound = new Sound(data); solids = new Solids(data, $("solid")); names = new Names(data);
+  player = new Player(data, { motion, view, scenery, solids, names, contacts, clock, sound });
+  player.changed = () => { dirty = true; };
+  curves = new Curves(data, motion, contacts, view);
+  const seek = (t) => { player.toggle(false); player.seek(t); };
+  plots = new Plots($("plots"), data, curves, seek); strip = new Strip($("plots"), data, sound, seek);
+  span = player.end - player.start; trackKey = toldAt = announced = "";
+  $("parts").replaceChildren(); $("whose").replaceChildren();
+  chips = data.bodies.slice(0, MANY).map(chipOf);
+  for (const b of curves.movers) $("whose").add(new Option(data.bodies[b].name, String(b)));
+  $("space").disabled = !solids.any; $("label").disabled = !names.any; $("adapt").disabled = !clock.uneven;
+  $("push").disabled = !contacts.known; $("tick").disabled = !sound.any; $("back").disabled = $("next").disabled = !data.events.length;
+  readLook();
+  resize();
+  const shown = old && old.data.bodies[old.plots.body], first = data.bodies.findIndex((body, b) => shown && body.name === shown.name && motion.rows[b]);
+  const usual = first >= 0 ? first : data.ranks.find((b) => motion.rows[b]) ?? curves.movers[0];
+  document.querySelector(".plots").hidden = usual === undefined;
+  if (usual !== undefined) showPlots(usual);
+  if (old) resume(old);
+};
+
+// Time counts from the end, which is where a longer run is shown, too; parts are known by their names.
+const resume = ({ data: before, view: sight, player: was, plots: charts, sound: heard, solids: solid, names: named }) => {
+  const now = (b) => data.bodies.findIndex((body) => body.name === (before.bodies[b] || {}).name), later = player.end - was.end;
+  player.t = clamp(was.t + later, player.start, player.end);
+  Object.assign(player, { playing: was.playing, points: was.points, arrows: was.arrows, chosen: now(was.chosen), faded: new Set([...was.faded].map(now)) });
+  player.setSpeed(was.speedIndex); player.setAdaptive(was.adaptive || !was.clock.uneven);
+  plots.range = charts.range.map((t) => clamp(t + later, player.start, player.end));
+  if (!(plots.range[1] > plots.range[0]) || charts.range[1] - charts.range[0] >= was.end - was.start) plots.all();
+  Object.assign(sound, { on: heard.on, context: heard.context, noise: heard.noise, latest: heard.latest });
+  names.on = named.on && names.any;
+  if (solid.on && solids.any && solids.turn(true)) Object.assign(solids, { tilt: solid.tilt, yaw: solid.yaw });
+  const anchor = sight.anchor && [now(sight.anchor[0]), ...sight.anchor.slice(1)];
+  Object.assign(view, { turn: sight.turn, zoom: sight.scale / view.base, anchor: anchor && anchor[0] >= 0 ? anchor : null });
+  if (view.anchor || view.told.follow) view.shift = sight.shift.slice();
+  else { view.aim(motion.poses(player.t)); view.shift = [sight.centre[0] - view.centre[0], sight.centre[1] - view.centre[1]]; }
+  plots.stale(); dirty = true;
+};
 
 const showPlots = (b) => {
   if (!motion.rows[b]) return;
@@ -115,7 +156,7 @@ const showPlots = (b) => {
 
 const resize = () => {
   const ratio = window.devicePixelRatio || 1, width = stage.clientWidth, height = stage.clientHeight;
-  if (!width || !height) return;
+  if (!width || !height || !view) return;
   stage.width = Math.round(width * ratio); stage.height = Math.round(height * ratio);
   view.resize(width, height, ratio);
   plots.stale(); dirty = true;
@@ -126,6 +167,7 @@ const frame = (now) => {
   const seconds = Math.min((now - last) / 1000, 0.1);
   if (last && now > last) fps = 0.95 * fps + 0.05 * (1000 / (now - last));
   last = now;
+  if (!player) { requestAnimationFrame(frame); return; }
   if (player.tick(seconds)) { plots.hold(player.t); dirty = true; }
   if (dirty || plots.dirty) {
     dirty = plots.dirty = false;
@@ -216,7 +258,7 @@ const keys = {
 const arrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 document.addEventListener("keydown", (event) => {
   const target = event.target, typing = target instanceof HTMLSelectElement || (target instanceof HTMLInputElement && target.id !== "scrub");
-  if (event.ctrlKey || event.metaKey || typing) return;
+  if (!player || event.ctrlKey || event.metaKey || typing) return;
   const on = target instanceof HTMLButtonElement && (event.key === " " || event.key === "Enter");
   const direction = arrows[event.key];
   if (direction) {
@@ -234,15 +276,7 @@ document.addEventListener("keydown", (event) => {
 $("scrub").addEventListener("input", () => { player.toggle(false); player.seek(player.start + (span * Number($("scrub").value)) / 10000); });
 SPEEDS.forEach((speed, k) => { const option = new Option(k === SPEEDS.length - 1 ? "real time" : speedText(speed), String(k)); $("speed").add(option); });
 $("speed").addEventListener("change", () => player.setSpeed(Number($("speed").value)));
-for (const b of curves.movers) $("whose").add(new Option(data.bodies[b].name, String(b)));
 $("whose").addEventListener("change", () => showPlots(Number($("whose").value)));
-$("space").disabled = !solids.any;
-$("label").disabled = !names.any;
-$("adapt").disabled = !clock.uneven;
-$("push").disabled = !contacts.known;
-$("tick").disabled = !sound.any;
-$("back").disabled = $("next").disabled = !data.events.length;
-offerFiles($("files"), data);
 
 // Paper: the still picture takes the poses of the instant shown, and dark pages are printed light.
 let themeBefore = null;
@@ -270,11 +304,9 @@ window.addEventListener("afterprint", toScreen);
 const preferred = window.matchMedia("(prefers-color-scheme: dark)");
 preferred.addEventListener("change", () => { if (!themeBefore) setTheme(preferred.matches ? "dark" : "light"); });
 setTheme(preferred.matches ? "dark" : "light");
-const first = data.ranks.find((b) => motion.rows[b]) ?? curves.movers[0];
-if (first === undefined) document.querySelector(".plots").hidden = true; else showPlots(first);
 // For scripts that drive a page: seek to an instant, set the view (in space too), ask where a point of a body is seen (CSS pixels).
 window.watchsim = {
-  window: data.window,
+  get window() { return data.window; },
   seek: (t) => { player.toggle(false); player.seek(t); player.draw(ctx, look); },
   space: (tilt, yaw) => { solids.turn(true); Object.assign(solids, { tilt, yaw }); dirty = true; },
   mark: (points, forces) => { player.points = points; player.arrows = forces; dirty = true; },
@@ -292,3 +324,5 @@ new ResizeObserver(resize).observe($("picture"));
 window.addEventListener("resize", resize);
 resize();
 requestAnimationFrame(frame);
+const whole = JSON.parse($("data").textContent);
+if (whole) { open(whole); offerFiles($("files"), data); } else document.querySelector("main").classList.add("waiting");

@@ -30,6 +30,27 @@ class Scenery {
     const moving = this.parts.filter((part) => !data.bodies[part.body].still), first = moving.findIndex((part) => !part.pale);
     this.behind = moving.slice(0, first < 0 ? moving.length : first);
     this.moving = moving.slice(this.behind.length);
+    this.ghost = []; // outlines of an earlier version: body, path, and how far its body stood from where it stands now
+  }
+
+  // Outlines of another version that are not among these, or stand elsewhere.
+  haunt(other) {
+    const same = (part, one) => part.layer === one.layer && part.codes === one.codes && part.numbers === one.numbers;
+    this.ghost = other.parts.flatMap((one) => {
+      const then = other.bodies[one.body], b = this.bodies.findIndex((body) => body.name === then.name);
+      if (b < 0 || then.on !== this.bodies[b].on) return [];
+      const off = then.motion === "free" ? [0, 0] : [0, 1].map((k) => then.at[k] - this.bodies[b].at[k]);
+      return Math.hypot(...off) < 1e-12 && this.parts.some((part) => part.body === b && same(part, one)) ? [] : [{ body: b, path: one.path, off }];
+    });
+  }
+
+  haunted(ctx, view, poses, look) {
+    for (const { body, path, off } of this.ghost) {
+      const [x, y, angle] = poses.slice(3 * body, 3 * body + 3);
+      view.place(ctx, [x + off[0], y + off[1], angle], 0);
+      ctx.strokeStyle = look.accent; ctx.lineWidth = 1.3 / view.scale; ctx.setLineDash([5 / view.scale, 3 / view.scale]);
+      ctx.stroke(path); ctx.setLineDash([]);
+    }
   }
 
   // Everything at the poses given; `look` holds colours, what is faded, and the body chosen (or -1).
@@ -49,6 +70,7 @@ class Scenery {
     ctx.globalAlpha = 1;
     this.bodies.forEach((body, b) => { if (body.motion === "pivot") this.ring(ctx, view, poses, b, look); });
     for (const zigzag of this.zigzags) zigzag.draw(ctx, view, poses, look);
+    this.haunted(ctx, view, poses, look);
   }
 
   shadow(ctx, view, poses, part, look) {

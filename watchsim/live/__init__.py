@@ -1,0 +1,1 @@
+"""What happens between a save and what the page shows of it?"""
