@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+import os
+import threading
 from pathlib import Path
 
 from watchsim import stopping
@@ -33,7 +35,7 @@ def run(args: argparse.Namespace) -> int:
     try:
         live = Live(path, args.port)
     except OSError as error:
-        raise InputError(f"--port {args.port}: {error.strerror}. Choose another port, or none.") from error
+        raise InputError(f"--port {args.port}: {os.strerror(error.errno or 0)}. Choose another port, or none.") from error
     announce_compile()
     with stopping.held():  # at the first Ctrl-C the server ends, and with it the process that computes
         live.serve(lambda url: _open(url, args.no_browser))
@@ -45,5 +47,10 @@ def _open(url: str, only_print: bool) -> None:
 
     print(url, flush=True)
     say("Following every save; Ctrl-C ends it.")
-    if not only_print and not webbrowser.open(url):
-        say("There is no browser here to open it; open the address above yourself.")
+
+    def show() -> None:
+        if not webbrowser.open(url):
+            say("There is no browser here to open it; open the address above yourself.")
+
+    if not only_print:
+        threading.Thread(target=show, daemon=True).start()  # a browser in the terminal stays until it is left

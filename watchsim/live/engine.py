@@ -14,6 +14,7 @@ import io
 import multiprocessing
 import os
 import sys
+import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -215,7 +216,10 @@ def _answers(order: Order, reference: Side | None, send: Send) -> None:
         run = run or _run(scene, give)
         give("motion", side=replace(side, run=None), **_motion(run))
     except SceneError as error:
-        give("faults", faults=[str(fault) for fault in error.faults], drawings=_pictures(order.path, error))
+        faults = [str(fault) for fault in error.faults]
+        give("faults", faults=faults, drawings=[])
+        if pictures := _pictures(order.path, error):
+            give("faults", faults=faults, drawings=pictures)
     except (ValueError, MemoryError, OSError) as error:
         give("faults", faults=[str(error) or type(error).__name__], drawings=[])
 
@@ -295,7 +299,27 @@ def _pictures(path: Path, error: SceneError) -> list[dict[str, Any]]:
         if errors:
             listed = [[_place(one.x_mm, one.y_mm), f"{one.message.rstrip('.')}. {one.fix}".strip()] for one in errors]
             found.append({"name": name, "picture": _picture(replace(drawing, findings=errors)), "faults": listed})
+    with contextlib.suppress(SceneError, ValueError, OSError):
+        found += [] if found else _overlapping(load_set(path, {}))
     return found
+
+
+def _overlapping(scene: Scene) -> list[dict[str, Any]]:
+    """The bodies at the start, with rings where they overlap; none where they do not."""
+    from watchsim.mechanism.check import modelled_pairs
+    from watchsim.mechanism.compile import compile_scene
+    from watchsim.mechanism.overlap import overlaps
+    from watchsim.render.stage import still
+
+    places = [one.place for one in overlaps(scene)]
+    if not places:
+        return []
+    compiled = compile_scene(scene)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "start.png"
+        still(scene, path, compiled, modelled_pairs(compiled, [body.name for body in scene.bodies]), places)
+        picture = base64.b64encode(path.read_bytes()).decode("ascii")
+    return [{"name": "The start, with a ring at every overlap", "picture": picture, "faults": []}]
 
 
 def _faulty(path: Path, error: SceneError) -> Iterator[tuple[str, Drawing]]:
