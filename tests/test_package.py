@@ -21,11 +21,22 @@ def test_profiles_are_found_wherever_the_package_is() -> None:
     assert all((folder / name / "scene.toml").is_file() for name in PROFILES)
 
 
+def test_profiles_are_named_from_any_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As the pages name them; a folder of that name that is here comes first."""
+    monkeypatch.chdir(tmp_path)
+    assert ws.load("profiles/incline").path == ws.profiles_dir() / "incline" / "scene.toml"
+    Path("profiles").mkdir()
+    with pytest.raises(ws.SceneError, match="no such scene"):
+        ws.load("profiles/incline")
+
+
 def test_versions_agree() -> None:
-    project = re.search(r'^version = "(.+)"$', (ROOT / "pyproject.toml").read_text(), re.MULTILINE)
+    """The package holds the version; builds read it there, papers quote it."""
+    assert 'dynamic = ["version"]' in (ROOT / "pyproject.toml").read_text()
     citation = re.search(r"^version: (.+)$", (ROOT / "CITATION.cff").read_text(), re.MULTILINE)
-    assert project and citation
-    assert project[1] == citation[1] == ws.__version__
+    released = re.search(r"^## \[(\d.+?)\]", (ROOT / "CHANGELOG.md").read_text(encoding="utf-8"), re.MULTILINE)
+    assert citation and released
+    assert citation[1] == released[1] == ws.__version__
 
 
 def test_the_glossary_names_files_that_exist() -> None:

@@ -7,7 +7,7 @@ TYPE_CHECKING = False  # as in typing: the package is loaded before a command ca
 if TYPE_CHECKING:
     from typing import Any
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 _HOMES = {
     "load": "watchsim.scene.load",

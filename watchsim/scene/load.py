@@ -12,6 +12,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from watchsim.paths import profiles_dir
 from watchsim.scene.assign import assign
 from watchsim.scene.designed import with_design
 from watchsim.scene.errors import Fault, Faults, SceneError
@@ -229,7 +230,12 @@ def _read(path: Path) -> tuple[str, dict[str, Any]]:
 
 
 def scene_file(path: Path) -> Path:
-    """The file itself, or of a folder the scene in it; SceneError where that holds none."""
+    """The file itself, or of a folder the scene in it; SceneError where that holds none.
+
+    `profiles/NAME` is that of the package where no folder `profiles` is here.
+    """
+    if path.parts[:1] == ("profiles",) and not Path("profiles").exists():
+        path = profiles_dir().joinpath(*path.parts[1:])
     if not path.is_dir():
         return path
     found = next((path / name for name in SCENE_FILES if (path / name).is_file()), None)
