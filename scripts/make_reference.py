@@ -23,6 +23,7 @@ ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = Path(watchsim.__file__).resolve().parent  # installed or not
 FOLDER = ROOT / "docs" / "reference"
 WIDEST = 100  # of a signature in one line
+ITEM = re.compile(r"([\w.]+(?:, [\w.]+)*) {2,}(.+)")  # a line of a docstring's list: names, two spaces or more, what they are
 NOTE = "Made from the docstrings by `python scripts/make_reference.py`; not edited by hand."
 
 # Page: title, then names of `watchsim` and, below what returns them, of records that they return ("module:name").
@@ -164,7 +165,7 @@ def contents() -> str:
         for name in names:
             shown, thing = found(name)
             parts.append(f"| [`{shown}`]({page}.md#{anchor(shown)}) | {first_sentence(thing)} |\n")
-    parts.append("\n## [Keys of a scene file](keys.md)\n")
+    parts.append("\n## [Keys of a scene file](keys.md)\n\n## [Glossary](../guide/glossary.md)\n")
     return "".join(parts)
 
 
@@ -265,7 +266,7 @@ def markdown(docstring: str) -> str:
     lines = []
     in_list = False
     for line in docstring.replace("<", "&lt;").splitlines():
-        head = re.match(r"([\w.]+(?:, [\w.]+)*) {2,}(.+)", line)
+        head = ITEM.match(line)
         in_list = bool(head) or (in_list and line.startswith(" "))
         if head:
             lines.append(f"- {', '.join(f'`{name}`' for name in head[1].split(', '))}: {head[2]}")

@@ -21,7 +21,7 @@ step() { # step NAME COMMAND...: run it, say how long it took, and remember it i
 
 rm -rf "$environment"
 python3 -m venv "$environment"
-"$environment/bin/pip" install --quiet '.[test,browser,notebook]'
+"$environment/bin/pip" install --quiet '.[test,browser,docs]'
 PATH=$PWD/$environment/bin:$PATH
 
 step "all tests" pytest -n auto --dist worksteal -m "slow or not slow" --hypothesis-profile=nightly --durations=20 -rs
@@ -51,6 +51,7 @@ step "damaged results" python scripts/fuzz/results.py --count 500
 
 step "benchmarks" watchsim verify --slow
 step "restitution and friction from 0 to 1" python scripts/reports/stability.py grid "$scratch/grid.csv"
+step "the site" python scripts/make_site.py
 step "demo" watchsim demo -o "$scratch/demo"
 
 [ ${#failed[@]} -eq 0 ] || { printf 'Failed: %s\n' "${failed[@]}"; exit 1; }
