@@ -106,6 +106,27 @@ def test_text_says_when_all_is_well_and_cuts_long_lists(read_bytes: Reader) -> N
     assert "and 18 more of stray-line" in text
 
 
+def test_alike_findings_without_a_place_are_one_line() -> None:
+    said = [Finding("external", "error", f'block "A" is drawn in another file; INSERT #{k:X} is left out') for k in range(175)]
+    other = Finding("external", "error", 'block "B" is drawn in another file; INSERT #C is left out')
+    text = "\n".join(finding_lines([*said, other]))
+    assert text.count("(external)") == 2 and "INSERT #0 is left out (and 174 more alike)" in text and "more of" not in text
+
+
+@pytest.mark.parametrize(("sides", "found"), [(64, True), (12, True), (8, False)])
+def test_a_regular_polygon_is_the_circle_that_it_stands_for(read_bytes: Reader, sides: int, found: bool) -> None:
+    """As a program without arcs writes a bore; its deviation is the rise of a chord. A nut is a nut."""
+    corners = [(3.0 + math.cos(TURN * k / sides), 4.0 + math.sin(TURN * k / sides)) for k in range(sides)]
+    drawing = read_bytes(d.dxf(d.circle(3, 4, 2) + d.polygon(corners)))
+    polygons = [circle for circle in inspect_report(drawing)["circles"] if circle["sides"]]  # type: ignore[attr-defined]
+    assert len(polygons) == found
+    if found:
+        (one,) = polygons
+        assert one["hole"] and (one["x_mm"], one["y_mm"], one["radius_mm"]) == pytest.approx((3.0, 4.0, 1.0), abs=1e-6)
+        assert one["deviation_um"] == pytest.approx(1e3 * (1.0 - math.cos(math.pi / sides)), abs=1e-3)
+        assert f"drawn as {sides} straight pieces" in inspect_text(drawing)
+
+
 def test_every_finding_with_a_place_tells_it_once() -> None:
     inside = Finding("open-outline", "error", "the outline is open: 1 mm between (1, -2) and (1, -3) mm", x_mm=1.0, y_mm=-2.0)
     beside = Finding("slit", "notice", "LINE #4F goes out and back along itself", x_mm=1.25, y_mm=-2.0)

@@ -23,19 +23,25 @@ from watchsim.geometry.primitives import Arc, Boxes, Line, Point
 from watchsim.geometry.solids import area
 
 SAME = 1e-9  # m: centres and radii this close are one
+UNEVEN, ROUNDED = 1e-3, 1e-6  # of the radius, or m: so far corners of a regular polygon may lie from where they belong
+SHARPEST = math.radians(31.0)  # turn from piece to piece: a twelve-sided nut is still taken for a circle
 SHOWN = 8  # circles of a layer written out
 
 
 class Circle(NamedTuple):
-    """Metres."""
+    """Metres. A regular polygon of `sides` stands for the circle through its corners; `deviation` is how far it leaves it."""
 
     centre: Point
     radius: float
+    sides: int = 0
+    deviation: float = 0.0
 
 
 def circle_of(loop: Loop) -> Circle | None:
-    """The circle that a closed outline is, in one piece or in arcs of one centre; None where it is none."""
+    """The circle that a closed outline is, in one piece, in arcs of one centre, or as a regular polygon; None for all else."""
     first = loop.edges[0]
+    if loop.closed and isinstance(first, Line):
+        return _polygon(loop)
     if not loop.closed or not isinstance(first, Arc) or (len(loop.edges) == 1 and not first.is_circle):
         return None
     for edge in loop.edges:
@@ -46,8 +52,26 @@ def circle_of(loop: Loop) -> Circle | None:
     return Circle((first.x, first.y), first.radius)
 
 
+def _polygon(loop: Loop) -> Circle | None:
+    """Of equal straight sides, so many that it is neither a nut nor the square of an arbor."""
+    count = len(loop.edges)
+    if math.tau / count > SHARPEST or not all(isinstance(edge, Line) for edge in loop.edges):
+        return None
+    corners = np.array([edge.start for edge in loop.edges])
+    centre = corners.mean(axis=0)
+    arms = corners - centre
+    radii = np.hypot(*arms.T)
+    radius = float(radii.mean())
+    uneven = float(np.abs(radii - radius).max())
+    steps = np.diff(np.unwrap(np.arctan2(*arms.T[::-1]), axis=0), append=np.nan)[:-1]
+    allowed = max(UNEVEN * radius, ROUNDED)
+    if uneven > allowed or np.abs(np.abs(steps) - math.tau / count).max() * radius > 2.0 * allowed:
+        return None
+    return Circle((float(centre[0]), float(centre[1])), radius, count, uneven + radius * (1.0 - math.cos(math.pi / count)))
+
+
 def circle_reports(loops: Iterable[Loop]) -> list[dict[str, object]]:
-    """For `inspect --json`: layer, centre and radius (mm), and whether it is a hole."""
+    """For `inspect --json`: layer, centre and radius (mm), whether it is a hole; of a polygon its sides and deviation (µm)."""
     return [
         {
             "layer": loop.layer,
@@ -55,6 +79,8 @@ def circle_reports(loops: Iterable[Loop]) -> list[dict[str, object]]:
             "y_mm": 1e3 * circle.centre[1],
             "radius_mm": 1e3 * circle.radius,
             "hole": loop.hole,
+            "sides": circle.sides,
+            "deviation_um": 1e6 * circle.deviation,
         }
         for loop in loops
         if (circle := circle_of(loop)) is not None
@@ -63,21 +89,22 @@ def circle_reports(loops: Iterable[Loop]) -> list[dict[str, object]]:
 
 def circle_lines(loops: Iterable[Loop]) -> Iterator[str]:
     """For people: the circles of one layer, equal ones together."""
-    alike: dict[tuple[str, str], list[Point]] = {}
+    alike: dict[tuple[str, str, str], list[Point]] = {}
     for loop in loops:
         circle = circle_of(loop)
         if circle is not None:
             word = "pivot" if last_word(loop.layer) in MARKS else "hole" if loop.hole else "circle"
-            alike.setdefault((word, f"{1e3 * circle.radius:.6g}"), []).append(circle.centre)
+            off = f", drawn as {circle.sides} straight pieces, {1e6 * circle.deviation:.3g} µm off" if circle.sides else ""
+            alike.setdefault((word, f"{1e3 * circle.radius:.6g}", off), []).append(circle.centre)
     shown = 0
-    for (word, radius), centres in alike.items():
+    for (word, radius, off), centres in alike.items():
         kept = centres[: max(0, SHOWN - shown)]
         shown += len(centres)
         places = ", ".join(f"({_mm(x)}, {_mm(y)})" for x, y in kept)
         rest = len(centres) - len(kept)
         more = "" if not rest else f" and {rest} more" if kept else f"{rest}"
         where = f" at {places}{' mm' if kept else ''}{more}" if kept else f": {more}"
-        yield f"{word if len(centres) == 1 else word + 's'} of radius {radius} mm{where}"
+        yield f"{word if len(centres) == 1 else word + 's'} of radius {radius} mm{where}{off}"
 
 
 def _mm(value: float) -> str:
@@ -90,7 +117,6 @@ def _mm(value: float) -> str:
 Array = NDArray[np.float64]
 
 FEWEST = 6  # pieces in a row
-SHARPEST = math.radians(31.0)  # turn from piece to piece: a twelve-sided nut is still taken for a circle
 SMOOTH = 2.0  # times: the curvature of a curve changes by no more from corner to corner
 EQUAL = 0.02  # relative difference of radii in an arc
 VISIBLE = 1e-7  # m: what splines and ellipses may be off by, too

@@ -7,7 +7,9 @@ from __future__ import annotations
 
 import math
 import re
+from collections import Counter
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 from watchsim.drawing.chain_faults import shown
 from watchsim.drawing.circles import circle_lines, circle_reports
@@ -18,6 +20,7 @@ from watchsim.geometry.loops import Box, Loop, extents, total_length
 from watchsim.geometry.primitives import Arc, Point
 from watchsim.geometry.solids import area
 
+ENTITY = re.compile(r"[A-Z0-9_]+ (#\w+|\(line [^)]*\))")  # in a message
 PLACED = re.compile(r"\([-−]?\d[^()]*, [-−]?\d[^()]*\)")  # coordinates in a message
 FEW = 8  # points of a layer written out
 SHOWN = 12  # findings of one code written out in the text
@@ -195,19 +198,30 @@ def _place(finding: Finding) -> str:
 
 
 def finding_lines(findings: Iterable[Finding]) -> list[str]:
-    """Findings by severity, numbered as in the picture; many of one kind are cut short with their count."""
+    """Findings by severity, numbered as in the picture; alike ones without a place are one, many of one kind are cut short."""
     numbered = sorted(enumerate(findings, 1), key=lambda pair: ORDER.index(pair[1].severity))
     if not numbered:
         return ["  no faults found"]
     result = ["  findings:"]
-    seen: dict[str, int] = {}
+    alike = Counter(_without_entity(finding) for _, finding in numbered)
+    listed, left = Counter[str](), Counter[str]()
     fixes: set[str] = set()
     for number, finding in numbered:
-        seen[finding.code] = seen.get(finding.code, 0) + 1
-        if seen[finding.code] <= SHOWN:
+        count = alike.pop(_without_entity(finding), 0)  # 0: one like it was listed
+        if count and listed[finding.code] == SHOWN:
+            left[finding.code] += count
+        elif count:
+            listed[finding.code] += 1
             where = f" [layer {finding.layer}]" if finding.layer is not None else ""
-            result.append(f"    {number:>3}. {finding.severity} ({finding.code}){where}: {finding.message}{_place(finding)}")
+            more = f" (and {count - 1} more alike)" if count > 1 else ""
+            place = _place(finding)
+            result.append(f"    {number:>3}. {finding.severity} ({finding.code}){where}: {finding.message}{place}{more}")
             result += [f"        {finding.fix}"] if finding.fix and finding.fix not in fixes else []
             fixes.add(finding.fix)
-    result += [f"        and {count - SHOWN} more of {code}" for code, count in seen.items() if count > SHOWN]
+    result += [f"        and {count} more of {code}" for code, count in left.items()]
     return result
+
+
+def _without_entity(finding: Finding) -> Finding:
+    """What findings have in common that name no place, but each an entity."""
+    return finding if finding.x_mm is not None else replace(finding, message=ENTITY.sub("", finding.message))

@@ -133,7 +133,10 @@ def size_of(drawings: Sequence[Drawing]) -> float:
 Floats = NDArray[np.float64]
 Region = Any  # a polygon, or several, of shapely
 MOST = 400  # teeth
-MISS = 2e-3  # of the radius: what a drawing may fail to be alike
+MISS = 6e-3  # of the radius: what teeth may fail to be alike, as where they are cut into a disc of thirty straight pieces
+ROOTS = 0.4  # of their height: what lies below may be the straight pieces of a rim, which do not go with the teeth
+ALIGNED = 0.1  # of a pitch, besides: with a quarter of a pitch any fold would do
+RIM = np.linspace(0.0, math.tau, 361)
 ROUND = 0.02  # of the radius: what differs less from a circle is a disc
 
 
@@ -160,13 +163,19 @@ def turned(loops: Sequence[Loop], rings: Sequence[Floats]) -> Turned | None:
     if outer <= 0.0 or float(radii.min()) > (1.0 - ROUND) * outer:
         return None
     tip = points[int(radii.argmax())]
-    region = _region(around)
+    floor = float(radii.min()) + ROOTS * (outer - float(radii.min()))
+    rim = _region([floor * np.column_stack((np.cos(RIM), np.sin(RIM)))])
+    teeth = _region(around).difference(rim)
     for fold in range(min(MOST, len(points)), 1, -1):
         angle = 2.0 * math.pi / fold
-        there = placed(tip[None], (0.0, 0.0, angle))
-        if np.hypot(*(points - there).T).min() > MISS * outer:
+        miss = min(MISS, ALIGNED * angle) * outer
+        # A turn by 1/60 brings a wheel of 59 teeth nearly onto itself; thirty such turns bring teeth into the gaps.
+        turns = [angle * 2**k for k in range(fold.bit_length())]
+        tips = (points - placed(tip[None], (0.0, 0.0, turn)) for turn in turns)
+        if any(np.hypot(*apart.T).min() > miss for apart in tips):
             continue
-        if _region([placed(ring, (0.0, 0.0, angle)) for ring in around]).hausdorff_distance(region) <= MISS * outer:
+        there = (_region([placed(ring, (0.0, 0.0, turn)) for ring in around]).difference(rim) for turn in turns)
+        if all(one.hausdorff_distance(teeth) <= miss for one in there):
             return Turned(fold, centre, float(radii.min()), outer)
     return None
 
@@ -305,7 +314,10 @@ class Piece:
 
     @cached_property
     def arcs(self) -> list[Arc]:
-        return [edge for loop in self.loops for edge in loop.edges if isinstance(edge, Arc)]
+        """Its arcs, and the circles for which its polygons stand."""
+        drawn = [edge for loop in self.loops for edge in loop.edges if isinstance(edge, Arc)]
+        meant = [circle for loop in self.loops if (circle := circle_of(loop)) is not None and circle.sides]
+        return drawn + [Arc(*circle.centre, circle.radius, 0.0, math.tau) for circle in meant]
 
     @cached_property
     def is_disc(self) -> bool:
@@ -381,6 +393,8 @@ def _alike(one: Piece, other: Piece) -> bool:
 SAME = 2e-6  # m: two centres this close are one, as in drawings with three decimals of a millimetre
 SHARE = 0.1  # of a piece's outline must lie on arcs about a mark for these to name its centre
 MANY, DEEP = 8, 0.65  # a wheel: so many teeth, or slots so deep (least by largest radius) that it is no nut and no square stone
+DEEPER = 0.95  # of that of a nut with as many sides
+BORED = 1e-3  # of its radius: a bore this close to the centre of a wheel's area is its centre, whatever facets do to the area
 SURE, USUAL, WEAK, NONE = 3, 2, 1, 0  # how much a centre is worth
 
 
@@ -407,7 +421,9 @@ def centre_of(piece: Piece, marks: Sequence[Mark]) -> Centre | None:
         return Centre(best[1].at, SURE, why, best[1])
     if symmetry is not None and is_toothed(symmetry):
         mark = next((one for one in marks if math.dist(one.at, symmetry.centre) <= SAME), None)
-        at = symmetry.centre if mark is None else mark.at
+        hole = hole_of(piece)
+        bored = hole is not None and math.dist(hole.at, symmetry.centre) <= BORED * symmetry.outer
+        at = mark.at if mark is not None else hole.at if hole is not None and bored else symmetry.centre
         return Centre(at, SURE, f"the outline has {symmetry.fold}-fold rotational symmetry about it", mark)
     inside = [mark for mark in marks if holds(piece, mark.at)]
     if len(inside) == 1:
@@ -418,7 +434,8 @@ def centre_of(piece: Piece, marks: Sequence[Mark]) -> Centre | None:
 
 def is_toothed(symmetry: Turned) -> bool:
     """Is it a wheel, with teeth or slots?"""
-    return symmetry.fold >= MANY or (symmetry.fold >= 3 and symmetry.inner < DEEP * symmetry.outer)
+    deep = max(DEEP, DEEPER * math.cos(math.pi / symmetry.fold))
+    return symmetry.fold >= MANY or (symmetry.fold >= 3 and symmetry.inner < deep * symmetry.outer)
 
 
 def hole_of(piece: Piece) -> Centre | None:
@@ -427,7 +444,8 @@ def hole_of(piece: Piece) -> Centre | None:
     if not circles:
         return None
     nearest = min(circles, key=lambda circle: math.dist(circle.centre, piece.centroid))
-    return Centre(nearest.centre, USUAL, f"the centre of its hole of radius {1e3 * nearest.radius:.4g} mm")
+    off = f", drawn as {nearest.sides} straight pieces, {1e6 * nearest.deviation:.3g} µm off" if nearest.sides else ""
+    return Centre(nearest.centre, USUAL, f"the centre of its hole of radius {1e3 * nearest.radius:.4g} mm{off}")
 
 
 def holds(piece: Piece, place: Point) -> bool:

@@ -141,8 +141,8 @@ def _has_holes(drawing: Drawing) -> bool:
 
 
 def marks_on(drawing: Drawing, layer: str) -> list[Point]:
-    """The points and centres of circles on a layer, each once."""
-    return _distinct(_marks(drawing, layer))
+    """The points and centres of circles on a layer, each once; else of polygons that stand for circles."""
+    return _distinct(_marks(drawing, layer, False)) or _distinct(_marks(drawing, layer, True))
 
 
 def _on_layer(table: Table, drawing: Drawing, layer: str) -> Point:
@@ -167,11 +167,11 @@ def _layers(drawing: Drawing) -> tuple[str, ...]:
     return tuple(dict.fromkeys([*drawing.layers, *(point[0] for point in drawing.points)]))
 
 
-def _marks(drawing: Drawing, layer: str) -> Iterator[Point]:
+def _marks(drawing: Drawing, layer: str, polygons: bool) -> Iterator[Point]:
     yield from ((x, y) for name, x, y in drawing.points if name == layer)
     for loop in drawing.loops:
         circle = circle_of(loop) if loop.layer == layer else None
-        if circle is not None:
+        if circle is not None and (polygons or not circle.sides):
             yield circle.centre
 
 
