@@ -52,6 +52,11 @@ LCP_RESIDUAL = 1e-9
 LCP_ROUNDING = 1e-13
 # Of what drives the problem: the same where loads are rounding, as the last resort. Large, small: as above.
 LCP_ROUGH = 1e-9
+# Other paths of Lemke's method; unknowns (2^12 eliminations take milliseconds) and sets of modes (some tenths of a second) up
+# to which all are tried after these. Large: a problem without solution takes long; small: one that has one ends the run.
+LCP_PATHS, LCP_ENUMERATED, MODE_SETS = 8, 12, 50000
+# Sweeps that make the largest coefficients of rows and columns alike. Large: slower; small: units misjudged.
+SCALING_SWEEPS = 3
 
 # --- Contact forces and modes ---
 
@@ -225,6 +230,11 @@ SLIP_SLACK = 2.0
 
 # --- Forces at the end of a mode ---
 
+# Of a step: places at which modes are looked at again where a stage saw one end. Large: slower; small: short ends are missed.
+MONITOR_SAMPLES = 8
+# Newton's steps to where a contact closes that drift has closed. Large: slower; small: it closes late, by its drift.
+TOUCH_STEPS = 6
+
 # Of the island's largest force: smaller ones have no sign. Large: kept although they pull; small: let go by rounding.
 FORCE_NOISE = 1e-14
 # Of the slack with which a mode ends: one that has ended does not start again. Large: modes alternate; small: early ends.
@@ -275,6 +285,16 @@ OVERLAP_RESOLUTION = 5e-5
 STEPPED_OVERLAP = 5e-3
 
 # --- Overlaps at the start ---
+
+# m: deviation of chords from outlines, where two do not come close and where they do. Large: depths are uncertain; small: slow.
+CHORDS_APART, CHORDS_NEAR = 5e-8, 1e-10
+# m: chords of two outlines that close are near. Large: slow; small: depths of chords that deviate.
+NEAR_CHORDS = 1e-6
+# Of half an edge: where it lies deepest. Large: depths are short; small: below rounding.
+DEEPEST_PLACE = 1e-12
+# rad or m, and per s: that near its rest position a body stands there. Large: one that is let go counts as still; small: one
+# that is drawn at rest does not.
+HANGS_STILL = 1e-9
 
 # Times the drawing's rounding: gaps of what touches. Large: distant ones are moved; small: touches are missed.
 TOUCH_REACH = 1.5

@@ -21,8 +21,6 @@ from watchsim.drawing import projection as plane_projection
 from watchsim.drawing import read
 from watchsim.drawing import svg as svg_file
 from watchsim.drawing import svg_elements as xml_elements
-from watchsim.dynamics import friction as solver_fallbacks
-from watchsim.mechanism import overlap
 from watchsim.scene import keys
 from watchsim.scene import load as read_scene
 from watchsim.scene import trains as carriers
@@ -63,8 +61,8 @@ QUOTED = [
     (METHOD, "G_N − μ sgn(ġ_T) G_c ≤ {} G_N and carries a force", tolerances.PAINLEVE),
     (METHOD, "an approach of {} of the slip", tolerances.NUDGE),
     (METHOD, "Where it exceeds {} of the kinetic energy", tolerances.ENERGY_GAIN),
-    (METHOD, "Lemke on {} other paths", solver_fallbacks.PATHS),
-    (METHOD, "(up to {} sets)", solver_fallbacks.MODES),
+    (METHOD, "Lemke on {} other paths", tolerances.LCP_PATHS),
+    (METHOD, "(up to {} sets)", tolerances.MODE_SETS),
     (METHOD, "missed by more than {} of the driving load", tolerances.LCP_ROUGH),
     (METHOD, "below `accumulation_time` ({} of the scene's unit", tolerances.ACCUMULATION_TIME),
     (METHOD, "rises by no more than {} `gap_zero`", tolerances.HIDDEN_REBOUND),
@@ -89,7 +87,7 @@ QUOTED = [
     (METHOD, "More than {} events within an instant", advance.EVENTS_AT_ONCE),
     (METHOD, "no acceleration beyond rounding ({} of the forces", tolerances.SLEEP),
     (METHOD, "Bodies that overlap by up to {} nm therefore touch", tolerances.DRAWING_ROUNDING / NANO),
-    (METHOD, "chords deviate by at most {} nm", overlap.DEVIATION / NANO),
+    (METHOD, "chords deviate by at most {} nm", tolerances.CHORDS_NEAR / NANO),
     (METHOD, "what that adds is added to the {} nm", tolerances.DRAWING_ROUNDING / NANO),
     (METHOD, "over the contacts within {} nm of a touch", tolerances.TOUCH_REACH * tolerances.DRAWING_ROUNDING / NANO),
     (METHOD, "until no gap is below {} `gap_zero`", tolerances.OVERLAP_GONE),

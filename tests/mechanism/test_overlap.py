@@ -14,8 +14,6 @@ import shapely
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Line
 from watchsim.mechanism.overlap import (
-    COARSE,
-    DEVIATION,
     chord_points,
     common_parts,
     face_depth,
@@ -29,7 +27,7 @@ from watchsim.mechanism.overlap import (
 from watchsim.scene.forces import Contact, Side
 from watchsim.scene.load import load
 from watchsim.scene.scene import Body, Scene
-from watchsim.tolerances import DRAWING_ROUNDING
+from watchsim.tolerances import CHORDS_APART, CHORDS_NEAR, DRAWING_ROUNDING
 
 # Are bodies that stand in each other found, and bodies that only touch left alone?
 
@@ -141,7 +139,7 @@ def test_only_declared_pairs_are_looked_at(desk, good):
 # How deep do regions and faces overlap, judged by hand and by sampling?
 
 CORNER = (Line(0.0, 0.0, 10e-3, 0.0), Line(10e-3, 0.0, 10e-3, 7e-3))  # material above the first and left of the second
-FACE_DEPTHS = chord_points(Loop(CORNER, closed=False), COARSE)
+FACE_DEPTHS = chord_points(Loop(CORNER, closed=False), CHORDS_APART)
 
 
 @pytest.mark.parametrize(
@@ -223,8 +221,8 @@ def test_what_is_allowed_grows_with_the_error_of_the_chords_of_either() -> None:
     (other,) = meetings(touching(block("a", 0.0), disc("b", -3e-3, 3e-3)))
     (both,) = meetings(touching(disc("a", -3e-3, 3e-3), disc("b", 4e-3, 4e-3)))
     assert flat.allowed == DRAWING_ROUNDING == 2e-9
-    assert 0.2 * DEVIATION < one.allowed - 2e-9 <= DEVIATION and other.allowed == pytest.approx(one.allowed, rel=1e-12)
-    assert one.allowed < both.allowed <= 2e-9 + 2.0 * DEVIATION
+    assert 0.2 * CHORDS_NEAR < one.allowed - 2e-9 <= CHORDS_NEAR and other.allowed == pytest.approx(one.allowed, rel=1e-12)
+    assert one.allowed < both.allowed <= 2e-9 + 2.0 * CHORDS_NEAR
     assert [met.depth for met in (flat, one, other, both)] == pytest.approx([0.0] * 4, abs=2e-10)
 
 

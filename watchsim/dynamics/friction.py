@@ -35,14 +35,21 @@ from watchsim.dynamics.lcp import (
 from watchsim.dynamics.redundant import unit_scale
 from watchsim.jit import by_reference, kernel
 from watchsim.model import blank
-from watchsim.tolerances import ACCELERATION_ROUNDING, LCP_ROUGH, LCP_ROUNDING, NO_DIRECTION, NUDGE, PAINLEVE
+from watchsim.tolerances import (
+    ACCELERATION_ROUNDING,
+    LCP_PATHS,
+    LCP_ROUGH,
+    LCP_ROUNDING,
+    MODE_SETS,
+    NO_DIRECTION,
+    NUDGE,
+    PAINLEVE,
+)
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 LARGEST = (1, 2, 4, 8, 16)  # unknowns of the problems counted together; one more place for larger ones
-PATHS = 8  # other ones that Lemke tries
-MODES = 50000  # sets of modes tried at most: some tenths of a second
 
 
 @kernel
@@ -329,7 +336,7 @@ def _detour(n, rough, problem):
 
     `rough`: the usual start counts, too, and so does what misses the conditions by next to nothing.
     """
-    for path in range(0 if rough else 1, PATHS + 1):
+    for path in range(0 if rough else 1, LCP_PATHS + 1):
         outcome = lemke_on_path(problem.A, problem.rhs, n, path, problem.lcp, problem.x)
         if outcome == LcpOutcome.SOLVED or (rough and outcome == LcpOutcome.INEXACT and solves(n, LCP_ROUGH, problem.lcp)):
             return True
@@ -413,7 +420,7 @@ def enumerate_modes(m, elements, problem):
         sets *= 2.0
     for _ in range(elements):
         sets *= 3.0
-    if sets > MODES:
+    if sets > MODE_SETS:
         return False
     magnitude = scale(problem.A, problem.rhs, n, problem.lcp)
     for number in range(int(sets)):

@@ -19,6 +19,7 @@ from watchsim.jit import by_reference, entry, kernel
 from watchsim.model import blank
 from watchsim.tolerances import (
     COEFFICIENT_ROUNDING,
+    LCP_ENUMERATED,
     LCP_LESS,
     LCP_PERTURBED,
     LCP_PIVOT,
@@ -26,6 +27,7 @@ from watchsim.tolerances import (
     LCP_ROUNDING,
     LOAD_ROUNDING,
     RATIO_TIE,
+    SCALING_SWEEPS,
 )
 
 # What is a contact problem about, and what solved it?
@@ -166,8 +168,6 @@ def _eliminate(count, step, room):
 # changes
 # not a bit of rounding either. So inertias of 1e-12 and forces of 1e6 look alike to the solver.
 
-SWEEPS = 3
-
 
 @kernel
 def scale(A, b, n, room):
@@ -231,7 +231,7 @@ def _balance(A, n, room):
     r, c, s = room.row_scale, room.column_scale, room.trial
     for i in range(n):
         s[i] = c[i]
-    for _ in range(SWEEPS):
+    for _ in range(SCALING_SWEEPS):
         balanced = True
         for i in range(n):
             room.load[i] = _unbalance(A, n, i, room)
@@ -280,7 +280,6 @@ def _power_of_two(value):
 UNEVEN, PERIOD = 5, 7  # for unlike entries of d on other paths
 PLAIN = 4  # paths that differ from the usual one by their loads alone
 UNLIKE = 0.6180339887498949  # multiples of it, less the whole part, are as unlike as can be
-ENUMERATED_SIZE = 12  # 2^12 small eliminations: some milliseconds
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -335,12 +334,12 @@ def lcp_work(size: int) -> LcpWork:
 
 @entry
 def solve_lcp(A: Array, b: Array, n: int, room: LcpWork, out_x: Array) -> LcpOutcome:
-    """Solve the leading n×n problem into out_x[:n]: Lemke, checked, then enumeration up to ENUMERATED_SIZE unknowns.
+    """Solve the leading n×n problem into out_x[:n]: Lemke, checked, then enumeration up to LCP_ENUMERATED unknowns.
 
     SOLVED: out_x solves the problem to rounding. Else why Lemke failed; enumeration found nothing.
     """
     outcome = lemke_checked(A, b, n, room, out_x)
-    if outcome != LcpOutcome.SOLVED and n <= ENUMERATED_SIZE and enumerate_lcp(A, b, n, room, out_x) == LcpOutcome.SOLVED:
+    if outcome != LcpOutcome.SOLVED and n <= LCP_ENUMERATED and enumerate_lcp(A, b, n, room, out_x) == LcpOutcome.SOLVED:
         return LcpOutcome.SOLVED
     return outcome
 

@@ -24,6 +24,7 @@ from watchsim.scene.roles import frequency, keeps_time, loads, oscillators, part
 from watchsim.scene.scene import Body, Scene, Tolerance
 from watchsim.scene.solids import HAIRSPRING, LYING, PLATE, UPRIGHT, Solid, total
 from watchsim.scene.trains import ON_PIVOT, Weighed, is_still
+from watchsim.tolerances import HANGS_STILL
 from watchsim.units import metric, show, to
 
 # How many pairs of primitives are declared between two bodies, how many can ever touch, how many are candidates at a time?
@@ -76,8 +77,6 @@ def _named(compiled: Compiled, pair: Any, body: int, names: Sequence[str]) -> st
 # What does a scene leave unsaid that changes its motion, and what does it say without effect?
 #
 # None of it is wrong by itself; all of it is easily overlooked. `watchsim check` lists it, `watchsim run` says it first.
-
-AT_REST = 1e-9  # rad or m, and per s: nearer than that to its rest position a body stands there
 
 
 def notes(scene: Scene) -> tuple[Finding, ...]:
@@ -143,7 +142,7 @@ def _at_rest(scene: Scene) -> Iterator[Finding]:
         return
     one, body = found[0], scene.body(found[0].body)
     start = body.angle if body.motion == "pivot" else 0.0
-    if abs(start - one.rest) <= AT_REST and all(abs(speed) <= AT_REST for speed in body.velocity):
+    if abs(start - one.rest) <= HANGS_STILL and all(abs(speed) <= HANGS_STILL for speed in body.velocity):
         message = f"{body.name} starts at rest in its rest position: it swings only if the drive sets it going"
         yield Finding("at-rest", "notice", message, f"Give an angle or a velocity under [bodies.{body.name}].")
 

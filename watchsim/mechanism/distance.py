@@ -24,6 +24,7 @@ from watchsim.mechanism.compile import compile_scene
 from watchsim.model import KIND_WORD, Model, records
 from watchsim.scene.forces import Contact, Side
 from watchsim.scene.scene import Body, Scene
+from watchsim.tolerances import DEEPEST_PLACE
 
 Outline = Loop | Sequence[Loop]
 Vector = tuple[float, float, float]
@@ -204,7 +205,7 @@ def _deepest_of_edge(edges: Any, row: int, others: Any, loops: tuple[Loop, ...],
         return None
     low, high = ways[max(top - 1, 0)], ways[min(top + 1, SAMPLES - 1)]
     best_way, best = ways[top], found[top]
-    while high - low > 1e-12 * half:
+    while high - low > DEEPEST_PLACE * half:
         inner = np.array([high - GOLDEN * (high - low), low + GOLDEN * (high - low)])
         (left, right), _ = depths(inner)
         low, high = (low, inner[1]) if left >= right else (inner[0], high)

@@ -24,7 +24,7 @@ from watchsim.scene.forces import Side
 from watchsim.scene.scene import Scene
 from watchsim.scene.toml import key_lines
 from watchsim.scene.trains import start_poses
-from watchsim.tolerances import DRAWING_ROUNDING, LARGEST_DRAWN, SMALLEST_DRAWN
+from watchsim.tolerances import CHORDS_APART, CHORDS_NEAR, DRAWING_ROUNDING, LARGEST_DRAWN, NEAR_CHORDS, SMALLEST_DRAWN
 
 # Which polygons stand for the material that some outlines bound?
 #
@@ -92,8 +92,6 @@ def placed(points: Floats, pose: tuple[float, float, float]) -> Floats:
 
 
 # How deep do two regions of material overlap, or a region and an open face?
-
-COARSE = 5e-8  # m, of chords where two outlines do not come close
 
 
 def face_line(points: Floats) -> Any:
@@ -169,7 +167,7 @@ def face_depth(face: Floats, edges: tuple[Edge, ...], shape: Any, allowed: float
         return best, place
     points = shapely.get_coordinates(shape)
     for edge in edges:
-        coarse = max(COARSE, COARSE / LARGEST_DRAWN * edge.radius) if isinstance(edge, Arc) else COARSE
+        coarse = max(CHORDS_APART, CHORDS_APART / LARGEST_DRAWN * edge.radius) if isinstance(edge, Arc) else CHORDS_APART
         if face_line(chord_points(Loop((edge,), closed=False), coarse)).distance(shape) > 2.0 * coarse:
             continue
         beside, behind = _behind_arc(edge, points) if isinstance(edge, Arc) else _behind_line(edge, points)
@@ -212,9 +210,7 @@ def _behind_arc(face: Arc, points: Floats) -> tuple[NDArray[np.bool_], Floats]:
 
 
 Pose = tuple[float, float, float]
-DEVIATION = 0.1e-9  # m, of chords near the other outline; too large: depths are uncertain; too small: slow
 SIDES = np.array([-1.0, -1.0, 1.0, 1.0])  # what widens a box (xmin, ymin, xmax, ymax)
-CLOSE = 1e-6  # m, between chords of two outlines that count as near
 
 
 @dataclass(frozen=True, slots=True)
@@ -316,7 +312,7 @@ class _Layer:
         self.side, self.loops, self.pose = side, loops, pose
         box = extents(loops) or (0.0, 0.0, 0.0, 0.0)
         self.grain = grain = min(grain, max(1.0, math.dist(box[:2], box[2:]) / LARGEST_DRAWN))
-        coarse = COARSE * grain
+        coarse = CHORDS_APART * grain
         self.points = [placed(chord_points(loop, coarse), pose) for loop in loops]
         low = [np.minimum(points[1:], points[:-1]) for points in self.points]
         high = [np.maximum(points[1:], points[:-1]) for points in self.points]
@@ -334,7 +330,7 @@ class _Layer:
         for loop, coarse in zip(self.loops, self.points, strict=True):
             marked = near[at : at + len(coarse) - 1]
             at += len(coarse) - 1
-            coarsely, fine = COARSE * self.grain, DEVIATION * self.grain
+            coarsely, fine = CHORDS_APART * self.grain, CHORDS_NEAR * self.grain
             points, error = refined_points(loop, coarsely, marked, fine) if marked.any() else (None, 0.0)
             points, worst = coarse if points is None else placed(points, self.pose), max(worst, error)
             if loop.closed and len(points) > LENS:
@@ -376,7 +372,7 @@ def _near(a: _Layer, b: _Layer) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     import shapely
 
     marks = np.zeros(len(a.boxes), bool), np.zeros(len(b.boxes), bool)
-    margin = CLOSE * max(a.grain, b.grain) * SIDES
+    margin = NEAR_CHORDS * max(a.grain, b.grain) * SIDES
     wide = a.boxes + margin
     inside_a, inside_b = np.flatnonzero(_meet(wide, b.box[None])), np.flatnonzero(_meet(b.boxes, a.box[None] + margin))
     if len(inside_a) and len(inside_b):

@@ -42,12 +42,14 @@ from watchsim.tolerances import (
     DEFECT,
     DEPENDENT_IN_STEPS,
     HIDDEN_REBOUND,
+    MONITOR_SAMPLES,
     RATES_TURNED,
     ROOT_RESOLUTION,
     SLIP_SLACK,
     SLOW,
     SLOW_ERROR,
     SMALLEST_STEP,
+    TOUCH_STEPS,
     WITHIN_ENDS,
 )
 
@@ -149,8 +151,6 @@ D = _table(
 
 # When, within a coupled step, does a decided mode end?
 
-SAMPLES = 8
-NEWTON_STEPS = 6  # to where a contact closes without drift
 NONE_FIRED = -1  # in the place of a monitor's code
 
 
@@ -217,8 +217,8 @@ def first_leave(model, regime, options, smallest, smooth, out_counts):
         if smooth.before[code] <= 0.0:
             return 0.0, code
     before = 0.0
-    for sample in range(1, SAMPLES + 1):
-        tau = length * sample / SAMPLES
+    for sample in range(1, MONITOR_SAMPLES + 1):
+        tau = length * sample / MONITOR_SAMPLES
         if _evaluate(model, regime, options, tau, smooth, out_counts) <= 0.0:
             return _first_before(model, regime, options, before, tau, smooth, out_counts)
         before = tau
@@ -230,7 +230,7 @@ def first_leave(model, regime, options, smallest, smooth, out_counts):
 def _first_before(model, regime, options, before, tau, smooth, out_counts):
     """(time, code of the monitor): the first to end between `before`, where all are positive, and tau, where some are not."""
     best, code, left = _earliest(model, regime, options, before, tau, smooth, out_counts)
-    for _ in range(SAMPLES):
+    for _ in range(MONITOR_SAMPLES):
         if not (left and before < best and smooth.held.contacts > 1):
             break
         tau = _while_within(options, before, best, smooth)
@@ -458,7 +458,7 @@ def _follow_to_touch(model, state, options, followed, touched, scratch):
     """
     pose, (end, before) = scratch.smooth.pose, followed
     tau, kinetic = end, before
-    for _ in range(NEWTON_STEPS):
+    for _ in range(TOUCH_STEPS):
         place(model, state.q, state.u, pose)
         look = normal_gap(model, touched, pose)
         if abs(look.gap) <= HIDDEN_REBOUND * options.gap_zero:
