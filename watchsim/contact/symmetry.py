@@ -32,6 +32,7 @@ def turn_symmetry(primitives: Records, tolerance: float) -> Symmetry:
     """The symmetry that most of one body's primitives share; images miss by at most `tolerance` (m), added up over a turn.
 
     Spokes do not share the symmetry of the teeth: they are loose. Fold 1 where less than half of the primitives share one.
+    What one tooth touches another touches: the image of each primitive is needed, within the clearance.
     """
     return _symmetry_of(primitives.tobytes(), tolerance)
 

@@ -108,7 +108,11 @@ def _between(edge: Edge, start: Point, end: Point, offset: float) -> Edge:
 
 
 def fold(loop: Loop, centre: Point = (0.0, 0.0)) -> int:
-    """How many equal teeth the outline has about `centre`: so often comes the same sequence of edges. 1 for none."""
+    """How many equal teeth the outline has about `centre`: so often comes the same sequence of edges. 1 for none.
+
+    Every edge must belong to a tooth, as errors are given to each: spokes on the same outline, which `contact.symmetry` leaves
+    out, make it 1.
+    """
     count = len(loop.edges)
     if not loop.closed or count < 2:
         return 1

@@ -153,7 +153,8 @@ class Turned:
 def turned(loops: Sequence[Loop], rings: Sequence[Floats]) -> Turned | None:
     """Of closed outlines together, with their chords; None where they are a disc, or come back only after a whole turn.
 
-    The centre of area of a wheel is its centre, whatever its teeth are like.
+    The centre of area of a wheel is its centre, whatever its teeth are like. No centre is known yet, and a tooth may have
+    other edges than the next one: unlike `geometry.variation.fold` and `contact.symmetry` this compares areas.
     """
     centre = section(loops).centroid
     around = [points - np.array(centre) for points in rings]
