@@ -209,12 +209,12 @@ def _anchor_beats(
     at_rows = progress(run, parts.wheel, run.t)
     needed = within | np.append(False, within[:-1])  # where a beat is locked ends with the impulse of the next,
     needed |= np.append(False, needed[:-1])  # or of the one after, where every other half swing has none
-    told = needed & is_recorded(run, found.start) & is_recorded(run, found.end)
+    recorded = needed & is_recorded(run, found.start) & is_recorded(run, found.end)
     marks = [
         anchor_marks(contacts.times, contacts.held, contacts.angle, run.t, at_rows, *span) if known else None
-        for known, span in zip(told, zip(found.start.tolist(), found.end.tolist(), strict=True), strict=True)
+        for known, span in zip(recorded, zip(found.start.tolist(), found.end.tolist(), strict=True), strict=True)
     ]
-    for i, (own, after) in enumerate(zip_longest(marks, _next_ones(marks, told))):
+    for i, (own, after) in enumerate(zip_longest(marks, _next_ones(marks, recorded))):
         if own is None or not within[i]:
             continue
         beat, rows = found.before + i + 1, []
@@ -230,10 +230,10 @@ def _anchor_beats(
         yield rows
 
 
-def _next_ones(marks: list[Marks | None], told: NDArray[np.bool_]) -> Iterator[Marks | None]:
+def _next_ones(marks: list[Marks | None], recorded: NDArray[np.bool_]) -> Iterator[Marks | None]:
     """For each beat the marks of the next in which the wheel goes on: those after it, or of the second after it (duplex)."""
     for i in range(1, len(marks)):
-        second = marks[i + 1] if told[i] and i + 1 < len(marks) else None
+        second = marks[i + 1] if recorded[i] and i + 1 < len(marks) else None
         yield marks[i] or second
 
 
@@ -252,9 +252,9 @@ def _hinged_beats(
     """
     times, which = _catches(run, wheel, pallets)
     needed = within | np.append(False, within[:-1])  # the recoil ends with the next half swing's impulse
-    told = needed & is_recorded(run, found.start) & is_recorded(run, found.end)
+    recorded = needed & is_recorded(run, found.start) & is_recorded(run, found.end)
     spans = zip(found.start.tolist(), found.end.tolist(), strict=True)
-    marks = [_marks(run, wheel, span) if known else None for known, span in zip(told, spans, strict=True)]
+    marks = [_marks(run, wheel, span) if known else None for known, span in zip(recorded, spans, strict=True)]
     for i, (own, after) in enumerate(pairwise(marks)):
         if own is None or after is None or not within[i]:
             continue
@@ -317,13 +317,13 @@ class MarksLeverPhases:
 
 
 def lever_phases(
-    found: Beats, contacts: WheelContacts, told: Ints, ways: tuple[Array, Array], size: int
+    found: Beats, contacts: WheelContacts, whole: Ints, ways: tuple[Array, Array], size: int
 ) -> Iterator[Stretches]:
-    """Those of `size` beats at a time: of beats `told`; `ways` is the wheel's progress at their ticks and at their ends."""
-    ends = np.searchsorted(contacts.times, (found.tick[told], found.end[told]), side="left")
-    parts = [slice(k, k + AT_ONCE) for k in range(0, len(told), AT_ONCE)]
+    """Those of `size` beats at a time: of beats `whole`; `ways` is the wheel's progress at their ticks and at their ends."""
+    ends = np.searchsorted(contacts.times, (found.tick[whole], found.end[whole]), side="left")
+    parts = [slice(k, k + AT_ONCE) for k in range(0, len(whole), AT_ONCE)]
     known = [
-        _marks_lever_phases(contacts, told[part], ends[:, part], (ways[0][part], ways[1][part])).columns() for part in parts
+        _marks_lever_phases(contacts, whole[part], ends[:, part], (ways[0][part], ways[1][part])).columns() for part in parts
     ]
     marks = MarksLeverPhases(*(np.concatenate(columns) for columns in zip(*known, strict=True))) if known else _nothing()
     for k in range(0, len(marks.beat), size):
@@ -456,7 +456,7 @@ class Phases:
 def phases(run: Trajectory, found: Beats | None = None) -> list[Phase]:
     """The phases of all beats that were recorded whole; empty where the scene is no escapement with a lever or an anchor.
 
-    A beat in which the wheel does not advance, or in which a phase cannot be told, has no rows.
+    A beat in which the wheel does not advance, or in which a phase is not known, has no rows.
     """
     return list(each_phase(run, found))
 
@@ -502,12 +502,12 @@ def _stretches(run: Trajectory, parts: Roles, found: Beats, within: NDArray[np.b
     contacts = wheel_contacts(run, parts, found, within)
     if parts.lever == parts.oscillator:
         return gathered(_anchor_beats(run, parts, found, contacts, within), AT_ONCE_PHASES)
-    told = np.flatnonzero(within & _told(run, found))
-    ways = (progress(run, parts.wheel, found.tick[told]), progress(run, parts.wheel, found.end[told]))
-    return lever_phases(found, contacts, told, ways, AT_ONCE_PHASES)
+    whole = np.flatnonzero(within & _is_whole(run, found))
+    ways = (progress(run, parts.wheel, found.tick[whole]), progress(run, parts.wheel, found.end[whole]))
+    return lever_phases(found, contacts, whole, ways, AT_ONCE_PHASES)
 
 
-def _told(run: Trajectory, found: Beats) -> NDArray[np.bool_]:
+def _is_whole(run: Trajectory, found: Beats) -> NDArray[np.bool_]:
     """The beats that have a tick and were recorded from there to their end."""
     return is_recorded(run, found.tick) & is_recorded(run, found.end)
 

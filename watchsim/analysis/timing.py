@@ -394,14 +394,14 @@ def whole_run(run: Trajectory, found: Beats) -> dict[str, Any] | None:
     uneven = sums["uneven_ticks" if heard else "uneven_passages"]
     return {
         "beats": sums["half_swings"],
-        "amplitude_deg": _told(sums["amplitude"], math.degrees(1.0)) if found.angular else None,
-        "period_s": _told(period, 1.0),
+        "amplitude_deg": _scaled(sums["amplitude"], math.degrees(1.0)) if found.angular else None,
+        "period_s": _scaled(period, 1.0),
         "rate_s_per_d": DAY * (found.nominal_period / period["mean"] - 1.0) if period else None,
         "beat_error_ms": 500.0 * abs(uneven["mean"]) if uneven else None,
     }
 
 
-def _told(moments: Moments | None, factor: float) -> dict[str, float] | None:
+def _scaled(moments: Moments | None, factor: float) -> dict[str, float] | None:
     if moments is None:
         return None
     spread = math.sqrt(moments["squares"] / max(moments["number"] - 1.0, 1.0))

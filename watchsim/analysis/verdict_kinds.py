@@ -57,7 +57,7 @@ def when(t: float) -> str:
 
 
 def torque_text(value: float, digits: int = 3) -> str:
-    """Without its sign: what counts is how much. In µN·m, as torques of watches are told, but for those of clocks."""
+    """Without its sign: what counts is how much. In µN·m, as torques of watches are given, but for those of clocks."""
     size = abs(value)
     return f"{1e6 * size:.{digits}g} µN·m" if WATCHES[0] <= size < WATCHES[1] else metric(size, "N·m", digits)
 

@@ -214,7 +214,7 @@ class Watch:
 
     @property
     def has_shapes(self) -> bool:
-        """Whether the contacts of the run are those of its scene's outlines, so that their arms can be told."""
+        """Whether the contacts of the run are those of its scene's outlines, so that their arms are known."""
         return len(self.run.pairs) == len(self.compiled.model.contacts)
 
     @property
@@ -357,9 +357,9 @@ def unlocked(watch: Watch) -> list[tuple[float, str, Face]]:
             continue
         if not watch.has_shapes:
             return []
-        told = arms(watch.run, watch.compiled, t, [*own, *pins])
-        driven = [(t, str(told.pairs[row]), one) for row in range(len(own)) if (one := face(watch, told, row)).impulse]
-        if any(_engaged(watch, told, row) for row in range(len(own), len(told.pairs))):
+        reach = arms(watch.run, watch.compiled, t, [*own, *pins])
+        driven = [(t, str(reach.pairs[row]), one) for row in range(len(own)) if (one := face(watch, reach, row)).impulse]
+        if any(_engaged(watch, reach, row) for row in range(len(own), len(reach.pairs))):
             engaged += driven
         else:
             free += driven
@@ -367,7 +367,7 @@ def unlocked(watch: Watch) -> list[tuple[float, str, Face]]:
     return sorted(free + engaged, key=lambda one: one[0]) if always else free
 
 
-def _engaged(watch: Watch, told: Arms, row: int) -> bool:
-    x, y, _ = told.places[watch.oscillator]
-    arm, _ = told.of(row, watch.oscillator)
-    return abs(arm) > GRAZING * math.hypot(told.point[row, 0] - x, told.point[row, 1] - y)
+def _engaged(watch: Watch, reach: Arms, row: int) -> bool:
+    x, y, _ = reach.places[watch.oscillator]
+    arm, _ = reach.of(row, watch.oscillator)
+    return abs(arm) > GRAZING * math.hypot(reach.point[row, 0] - x, reach.point[row, 1] - y)

@@ -126,11 +126,11 @@ def _fork(scene: Scene, made: Fork) -> Iterator[Judgement]:
             "pin-shake", "notice", shake, limit, message, f"Change slot or pin: {what}.", "shake of ¼° to ½°", PLAYTNER
         )
     lift = math.degrees(0.5 * (made.lift_angle[0].value + made.lift_angle[1].value))
-    told = math.degrees(scene.lift_angle) if scene.lift_angle is not None else lift
-    if abs(told - lift) > LIFT_ANGLE:
-        message = f"the scene says a lift angle of {told:.2f}°, the drawing has {lift:.2f}°"
+    declared = math.degrees(scene.lift_angle) if scene.lift_angle is not None else lift
+    if abs(declared - lift) > LIFT_ANGLE:
+        message = f"the scene says a lift angle of {declared:.2f}°, the drawing has {lift:.2f}°"
         fix = f'Set timegrapher.lift_angle = "{lift:.1f}°": the timegrapher\'s amplitude is in proportion to it.'
-        yield Judgement("lift-angle", "warning", told, lift, message, fix, "the lift angle as drawn", "this drawing")
+        yield Judgement("lift-angle", "warning", declared, lift, message, fix, "the lift angle as drawn", "this drawing")
     beat = math.degrees(0.5 * (made.from_rest[0].value + made.from_rest[1].value))
     if abs(beat) > OUT_OF_BEAT:
         message = f"at rest the balance stands {abs(beat):.2f}° off the middle of its lift: out of beat"
@@ -261,10 +261,10 @@ def guard(function: Function, k: int) -> Safety | None:
 
 
 def _entries(name: str, one: Quantity) -> dict[str, Any]:
-    told: dict[str, Any] = {f"{name}_deg": _degrees(one.value), f"{name}_deg_error": _degrees(one.error)}
+    values: dict[str, Any] = {f"{name}_deg": _degrees(one.value), f"{name}_deg_error": _degrees(one.error)}
     if one.tooth is not None:
-        told |= {f"{name}_deg_worst": _degrees(one.worst), f"{name}_deg_worst_tooth": one.tooth}
-    return told
+        values |= {f"{name}_deg_worst": _degrees(one.worst), f"{name}_deg_worst_tooth": one.tooth}
+    return values
 
 
 def _degrees(value: float) -> float | None:
@@ -335,7 +335,7 @@ def tables(function: Function) -> Iterator[Table]:
 
 
 def _row(words: str, pair: list[Quantity]) -> Row:
-    return Row(words, tuple(_told(one.value) for one in pair), _worst_tooth(pair))
+    return Row(words, tuple(_degrees_words(one.value) for one in pair), _worst_tooth(pair))
 
 
 def _fork_tables(function: Function) -> Iterator[Table]:
@@ -343,24 +343,26 @@ def _fork_tables(function: Function) -> Iterator[Table]:
     rows = []
     for name, words in BALANCE_WORDS.items():
         pair = [getattr(function.fork, name)[_beat(function, k)] for k in (0, 1)]
-        rows.append(Row(words, tuple(_told(one.value) for one in pair)))
-    rows.append(Row("shake of the pin", (_told(function.fork.pin_shake.value),)))
+        rows.append(Row(words, tuple(_degrees_words(one.value) for one in pair)))
+    rows.append(Row("shake of the pin", (_degrees_words(function.fork.pin_shake.value),)))
     yield Table(f"{function.parts.balance}, from the pin's meeting the fork", tuple(rows))
     if function.safety is not None:
         guards = [guard(function, k) for k in (0, 1)]
         freedoms = (("guard", "guard pin"), ("horn", "horns"), ("worst", "largest anywhere"))
-        told = (Row(words, tuple(_told(getattr(one, name).value) for one in guards)) for name, words in freedoms)
-        yield Table(f"freedom of {function.parts.lever} on its bank", tuple(told))
+        found = (Row(words, tuple(_degrees_words(getattr(one, name).value) for one in guards)) for name, words in freedoms)
+        yield Table(f"freedom of {function.parts.lever} on its bank", tuple(found))
 
 
-def _told(value: float) -> str:
+def _degrees_words(value: float) -> str:
     return "never" if math.isinf(value) else "-" if math.isnan(value) else f"{round(math.degrees(value), 3) + 0.0:.3f}°"
 
 
 def _worst_tooth(pair: list[Quantity]) -> str:
     """Words where the teeth are not alike."""
     words = [
-        f"{_told(one.worst)} at tooth {one.tooth} ({name})" for name, one in zip(STONES, pair, strict=True) if _stands_out(one)
+        f"{_degrees_words(one.worst)} at tooth {one.tooth} ({name})"
+        for name, one in zip(STONES, pair, strict=True)
+        if _stands_out(one)
     ]
     return ", ".join(words)
 

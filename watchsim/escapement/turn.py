@@ -394,7 +394,7 @@ def turn_text(found: Turn) -> str:
         "  " + "".join(f"{f'{name} {_unit(found, name)}':>{widths[name]}}" for name in names) + "   what happens",
     ]
     for one in happenings(found):
-        values = _told(found, one.row)
+        values = _values_of(found, one.row)
         lines.append("  " + "".join(f"{values[name]:>{widths[name]}.3f}" for name in names) + "   " + _words(found, one))
     near = passings(found)
     if near:
@@ -446,7 +446,7 @@ def _unit(found: Turn, name: str) -> str:
     return "mm" if found.scene.body(name).motion == "slide" else "°"
 
 
-def _told(found: Turn, row: int) -> dict[str, float]:
+def _values_of(found: Turn, row: int) -> dict[str, float]:
     """Coordinates in degrees or millimetres."""
     q = found.cycle.rows[min(row, len(found.cycle.rows) - 1)]
     return {
@@ -459,11 +459,11 @@ def _told(found: Turn, row: int) -> dict[str, float]:
 def _coordinates(found: Turn, row: int) -> dict[str, float]:
     return {
         f"{name}_{'travel_mm' if found.scene.body(name).motion == 'slide' else 'angle_deg'}": value
-        for name, value in _told(found, row).items()
+        for name, value in _values_of(found, row).items()
     }
 
 
 def _coordinates_text(found: Turn, row: int) -> str:
-    values = _told(found, row)
+    values = _values_of(found, row)
     parts = [f"{name} {values[name]:.3f}{_unit(found, name).replace('mm', ' mm')}" for name in _moving(found)]
     return ", ".join(parts).replace("-", "−")

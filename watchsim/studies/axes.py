@@ -56,13 +56,13 @@ def axes_from_texts(scene: Scene, texts: Iterable[str]) -> tuple[Axis, ...]:
     """The axes of KEY=... texts; SceneError lists all that is wrong with them."""
     axes, faults = [], []
     for text in texts:
-        key, equals, told = (part.strip() for part in text.partition("="))
+        key, equals, values = (part.strip() for part in text.partition("="))
         try:
-            if not equals or not key or not told:
+            if not equals or not key or not values:
                 raise UnitError('write KEY=FROM:TO:N or KEY=A,B,C, such as "torques.0.value=-0.6:-1.4:9 µN·m"')
-            axes.append(_axis(scene, key, told))
+            axes.append(_axis(scene, key, values))
         except UnitError as error:
-            faults.append(Fault(key or text, str(error), f" = {told}" if told else "", place="sweep"))
+            faults.append(Fault(key or text, str(error), f" = {values}" if values else "", place="sweep"))
     return checked(scene, axes, faults)
 
 
@@ -97,9 +97,9 @@ def checked(scene: Scene, axes: Sequence[Axis], found: Sequence[Fault] = ()) -> 
     return tuple(axes)
 
 
-def _axis(scene: Scene, key: str, told: str) -> Axis:
+def _axis(scene: Scene, key: str, values: str) -> Axis:
     dimension = dimension_of(scene, key)
-    parts = [part.strip() for part in told.split(":")]
+    parts = [part.strip() for part in values.split(":")]
     if dimension is not None and len(parts) == 3:
         count, unit = split(parts[2])
         start, end = (_quantity(part, unit, dimension) for part in parts[:2])
@@ -112,7 +112,7 @@ def _axis(scene: Scene, key: str, told: str) -> Axis:
         return _made(key, [float(value) for value in np.linspace(start, end, int(count))], dimension, unit)
     if dimension is not None and len(parts) != 1:
         raise UnitError("write FROM:TO:N, such as 0.1:0.2:5, or values with commas between them")
-    items = [item.strip() for item in told.split(",")]
+    items = [item.strip() for item in values.split(",")]
     if dimension is None:
         return _made(key, items, None)
     unit = split(items[-1])[1]

@@ -63,7 +63,7 @@ def _standard(values: Floats, quantile: Callable[[Floats], Floats]) -> Floats:
 def terms(inputs: int, samples: int) -> Ints:
     """Degrees (n, inputs) of the products that are looked at: the higher the degree, the fewer inputs take part.
 
-    Degree and number of inputs grow until there are about so many as can be told apart.
+    Degree and number of inputs grow until there are about so many as can be distinguished.
     """
     most = min(MOST_TERMS, max(samples, 1 + inputs))
     found = [(0,) * inputs]

@@ -274,7 +274,7 @@ class Fitting:
         z = self._within(np.zeros(len(self.knobs)))
         (first,) = self.models([z])
         if not np.isfinite(first[self.used]).all():
-            return self._told(z, None, f"the scene does not work as it is, so nothing can be fitted: {self.why}")
+            return self._report(z, None, f"the scene does not work as it is, so nothing can be fitted: {self.why}")
         bounds = ((self.low - self.base) / self.size - 1e-12, (self.high - self.base) / self.size + 1e-12)
         for _ in range(1 if self.stated else ROUNDS):
             found = least_squares(
@@ -290,7 +290,7 @@ class Fitting:
             if abs(value - limit) < 1e-6 * (knob.high - knob.low)
         ]
         stopped += [] if found.status > 0 else [f"not settled after {found.nfev} steps"]
-        return self._told(z, self.jacobian(z), "; ".join(stopped))
+        return self._report(z, self.jacobian(z), "; ".join(stopped))
 
     def _weigh(self, left: Array) -> None:
         """Each kind of reading by its own scatter, with its share of what fitting has taken from it."""
@@ -301,7 +301,7 @@ class Fitting:
                 scatter = math.sqrt(float(np.mean(own**2)) / spare)
                 self.sigma[self.kind == k] *= scatter if scatter > 1e-9 else 1.0
 
-    def _told(self, z: Array, jacobian: Array | None, message: str) -> Fit:
+    def _report(self, z: Array, jacobian: Array | None, message: str) -> Fit:
         keys: dict[str, Value] = {}
         groups: tuple[tuple[str, ...], ...] = ()
         words: tuple[str, ...] = ()

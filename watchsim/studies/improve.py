@@ -402,7 +402,7 @@ class Search:
         """Sentences, the strongest first; of a goal that is a mere value, nothing."""
         if end is None:
             return ()
-        told: list[tuple[float, str]] = []
+        advice: list[tuple[float, str]] = []
         goal = self.outputs[end[0]]
         for what, side, weight in self.multipliers(point, end, limits)[0]:
             if isinstance(what, Limit):
@@ -420,8 +420,8 @@ class Search:
                 name = f"{knob.key} {ABOVE if side > 0.0 else BELOW} {knob.shown(knob.low if side > 0.0 else knob.high)}"
             gain = shown(goal, gain * self.scale[end[0]], 3)
             more = "less" if end[1] > 0.0 else "more"
-            told.append((-weight, f"{name}: {words} {way} would give {gain} {more} {goal.label}"))
-        return tuple(words for _, words in sorted(told))
+            advice.append((-weight, f"{name}: {words} {way} would give {gain} {more} {goal.label}"))
+        return tuple(words for _, words in sorted(advice))
 
     # The whole search
 
@@ -431,18 +431,18 @@ class Search:
             return self._solved()
         begins = self._begins(starts)
         if not begins:
-            return self._told(None, f"no design of {len(self.seen)} between these limits works: {self._why(self.start)}")
+            return self._report(None, f"no design of {len(self.seen)} between these limits works: {self._why(self.start)}")
         self._scaled(begins[0])
         ends: tuple[tuple[int, float] | None, ...] = self.ends or (None,)
         found = [self.optimum(ends[0], self.limits, begin, method) for begin in begins]
         known = [one for one in found if one is not None]
         if not known:
-            return self._told(None, self._impossible())
+            return self._report(None, self._impossible())
         known.sort(key=lambda one: self.objective(self.values([one])[0], one, ends[0]))
         same = sum(self._alike(one, known[0], ends[0]) for one in known)
         if len(ends) > 1:
             return self._front(known[0], method, points)
-        return self._told(known[0], starts=(len(begins), same), active=self._held_by(known[0], ends[0], self.limits))
+        return self._report(known[0], starts=(len(begins), same), active=self._held_by(known[0], ends[0], self.limits))
 
     def _alike(self, one: Array, best: Array, end: tuple[int, float] | None) -> bool:
         values, least = self.values([one, best])
@@ -495,8 +495,8 @@ class Search:
         unique = [k for i, k in enumerate(best) if not i or np.abs((signed[k] - signed[best[i - 1]]) / spread).max() > NEAR]
         ideal = signed[unique].min(axis=0)
         middle = min(unique, key=lambda k: float(np.linalg.norm((signed[k] - ideal) / spread)))
-        told = self._told(designs[middle], "of the front, the design nearest to the best of each goal")
-        return replace(told, front=tuple(self._line(designs[k]) for k in unique))
+        reported = self._report(designs[middle], "of the front, the design nearest to the best of each goal")
+        return replace(reported, front=tuple(self._line(designs[k]) for k in unique))
 
     def _line(self, point: Array) -> dict[str, float]:
         (values,) = self.values([point])
@@ -537,13 +537,13 @@ class Search:
         try:
             bracket = self._bracket(off)
             if isinstance(bracket, str):
-                return self._told(None, bracket)
+                return self._report(None, bracket)
             root = brentq(off, *bracket, xtol=SOLVED, rtol=1e-14) if bracket[0] != bracket[1] else bracket[0]
         except _NoNumber:
-            return self._told(
+            return self._report(
                 None, "between two designs that work there is one that does not, so the goal cannot be closed in on"
             )
-        found = self._told(np.array([root]))
+        found = self._report(np.array([root]))
         (value,) = self.values([np.array([root])])[0]
         nearest = min(abs(float(v[0]) - target) for v in self.seen.values() if not np.isnan(v).any())
         jumps = abs(value - target) > max(1e-6 * abs(target), 1e-6, 10.0 * nearest)
@@ -582,7 +582,7 @@ class Search:
         reached = f"{output.label} comes to {shown(output, here + self.limits[0].value)} at {knob.key} = {at}"
         return f"{reached}{f', and beyond {why}' if why else ', where its limits end'}"
 
-    def _told(
+    def _report(
         self, point: Array | None, message: str = "", starts: tuple[int, int] = (1, 1), active: tuple[str, ...] = ()
     ) -> Better:
         old = self.seen[self.start.tobytes()]

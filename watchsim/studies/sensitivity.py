@@ -221,8 +221,8 @@ class Sensitivity:
 
     def __repr__(self) -> str:
         first = f", {self.effects[0].quantity.key} first" if self.effects else ""
-        told = ", ".join(one.column for one in self.outputs)
-        return f"<Sensitivity of {self.title!r}: {len(self.effects)} quantities{first}; {told}>"
+        columns = ", ".join(one.column for one in self.outputs)
+        return f"<Sensitivity of {self.title!r}: {len(self.effects)} quantities{first}; {columns}>"
 
     def _repr_html_(self) -> str:
         return notebook_html(self)

@@ -184,14 +184,14 @@ def _shot(led: Led, brief: bool, state: State | None) -> Cycle:
         again = _after_several(oscillate, found.amplitude, others) if found.trouble == UNSETTLED else None
         return again or _by_run(loop, parts, NO_REPEAT, led.time + AFTERWARDS * parts.period, state)
     if brief and abs(found.slope) < 1.0:
-        return _told(loop, parts, glanced(oscillate, found))
+        return _cycle(loop, parts, glanced(oscillate, found))
     exact = _closed(oscillate, found, others)
     loop.simulated += sum(other.simulated for other in others)
     if isinstance(exact, Return):
         return _by_run(loop, parts, NO_REPEAT, led.time + FEWEST * parts.period, state)
     if exact.multiplier is None or not abs(exact.multiplier) < 1.0:
         return _after_several(oscillate, (1.0 + ASIDE) * found.amplitude, others) or _unstable(loop, parts, exact)
-    return _told(loop, parts, exact)
+    return _cycle(loop, parts, exact)
 
 
 def _closed(oscillate: ReturnMap, found: Fixed, others: Sequence[Loop]) -> Polished | Return:
@@ -225,16 +225,16 @@ def _after_several(oscillate: ReturnMap, amplitude: float, others: Sequence[Loop
         return None
     if abs(exact.amplitude - found[1]) > ASIDE * ASIDE * found[1]:
         return None  # another one than the orbit's
-    told = _told(loop, oscillate.parts, exact)
+    cycle = _cycle(loop, oscillate.parts, exact)
     if number == 1:
-        return told
-    each = tuple(math.degrees(one) for one in exact.means.each) if told.amplitude_deg is not None else ()
+        return cycle
+    each = tuple(math.degrees(one) for one in exact.means.each) if cycle.amplitude_deg is not None else ()
     sizes = ", ".join(f"{one:.6g}°" for one in each)
     message = f"it repeats itself only after {number} oscillations, which differ: {sizes or 'their sizes'} in turn"
-    return dataclasses.replace(told, message=message, amplitudes_deg=each)
+    return dataclasses.replace(cycle, message=message, amplitudes_deg=each)
 
 
-def _told(loop: Loop, parts: Parts, exact: Polished) -> Cycle:
+def _cycle(loop: Loop, parts: Parts, exact: Polished) -> Cycle:
     """A cycle in watchmakers' units."""
     means = exact.means
     return Cycle(
@@ -268,11 +268,11 @@ def _times(factor: float, value: float | None) -> float | None:
 
 def _unstable(loop: Loop, parts: Parts, exact: Polished) -> Cycle:
     """A cycle that the mechanism leaves at the slightest disturbance: what it does then."""
-    told = _told(loop, parts, exact)
+    cycle = _cycle(loop, parts, exact)
     multiplier = exact.multiplier or 0.0
     how = "it swings too far and too little in turn" if multiplier < 0.0 else "it runs away from it"
     message = f"there is a cycle, but an unstable one (multiplier {multiplier:.3g}): disturbed, {how}"
-    return dataclasses.replace(told, found=False, verdict=UNSETTLED, message=message)
+    return dataclasses.replace(cycle, found=False, verdict=UNSETTLED, message=message)
 
 
 def _alone(oscillate: ReturnMap) -> Cycle:

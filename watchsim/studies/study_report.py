@@ -133,13 +133,13 @@ def tolerance_text(found: ToleranceStudy) -> str:
     lines += aligned(head, body)
     for name, each in found.contributions.items():
         known = f", {100.0 * found.explained[name]:.3g} % explained" if name in found.explained else ""
-        told = [
+        notable = [
             f"{one.key} {100.0 * one.total:.3g} %" if one.total is not None else f"{one.key} (rank correlation {one.rank:.2f})"
             for one in each[:MOST_TOLD]
             if one.total is None or one.total >= LEAST_TOLD
         ]
         label = by_column[name].label if name in by_column else WHETHER[name]
-        lines.append(f"  {label}{known}: {', '.join(told) or 'nothing stands out'}")
+        lines.append(f"  {label}{known}: {', '.join(notable) or 'nothing stands out'}")
     lines += [f"  {words}: {number}" for words, number in found.failures.items()]
     split = ", ".join(f"{name} {1e3 * value:.3g} ms" for name, value in found.seconds.items())
     return "\n".join([*lines, f"  a sample takes {1e3 * sum(found.seconds.values()):.3g} ms of one processor: {split}"])

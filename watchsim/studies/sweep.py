@@ -41,8 +41,10 @@ class Sweep:
 
     def __repr__(self) -> str:
         keys = ", ".join(axis.key for axis in self.axes)
-        told = ", ".join(one.column for one in self.outputs)
-        return f"<Sweep of {self.title!r}: {len(self.rows)} points over {keys}; {told}{'' if self.whole else '; interrupted'}>"
+        columns = ", ".join(one.column for one in self.outputs)
+        return (
+            f"<Sweep of {self.title!r}: {len(self.rows)} points over {keys}; {columns}{'' if self.whole else '; interrupted'}>"
+        )
 
     def _repr_html_(self) -> str:
         return notebook_html(self)
@@ -130,11 +132,11 @@ def swept(
         raise ValueError("a sweep needs at least one key with its values")
     rows = _rows(question, axes, points, executor, folder, resume, progress)
     columns = [name for one in outputs for name in ((one.column, f"{one.column}_error") if one.has_error else (one.column,))]
-    told = tuple(
+    outcomes = tuple(
         {**points[number], **{name: rows[number].get(name) for name in (*columns, "verdict", "message")}}
         for number in sorted(rows)
     )
-    return Sweep(question.scene.title, tuple(axes), outputs, told, len(rows) == len(points), time.perf_counter() - begun)
+    return Sweep(question.scene.title, tuple(axes), outputs, outcomes, len(rows) == len(points), time.perf_counter() - begun)
 
 
 def measured(outputs: Iterable[Output]) -> int | None:

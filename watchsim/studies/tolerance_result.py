@@ -436,13 +436,13 @@ def _message(samples: Samples, share: Share) -> str:
     words, number = kinds.most_common(1)[0]
     space = samples.plan.space
     away, differ = apart(samples, words)
-    told = []
+    traits = []
     for j in np.argsort(-np.abs(away), kind="stable")[:2]:
         one = space.tolerances[space.draws[j].members[0]]
         if abs(away[j]) * np.sqrt(number) > 3.0:
             size = abs(differ[j]) / known_unit(one.unit).factor
             side = "larger" if (away[j] > 0.0) == (one.nominal >= 0.0) else "smaller"  # of a torque to the left its magnitude
             gap = "" if one.unit in ("", "°") else " "
-            told.append(f"{space.draws[j].name} is {size:.2g}{gap}{one.unit} {side}")
-    how = f"; in these, on average, {' and '.join(told)} than in the others" if told else ""
+            traits.append(f"{space.draws[j].name} is {size:.2g}{gap}{one.unit} {side}")
+    how = f"; in these, on average, {' and '.join(traits)} than in the others" if traits else ""
     return f"{first}. Most failures: {words} ({number} of {int((~samples.good).sum())}){how}"

@@ -2,7 +2,7 @@
 const LEAST_TURNS = 0.25, STEEPEST = 0.95, STRAYS = 0.25, CHORDS = [24, 180];
 
 class Coil {
-  constructor(told) { Object.assign(this, told); }
+  constructor(data) { Object.assign(this, data); }
 
   // Its middle from collet to stud, the collet turned by so many radians from rest; x, y one after the other.
   line(turned, scale) {

@@ -1,10 +1,10 @@
 // Where do parts touch, and how hard?
 class Contact {
-  constructor(told) {
-    Object.assign(this, told);
-    this.closed = doubles(told.closed);
-    this.t = told.t ? doubles(told.t) : null;
-    this.force = told.force ? floats(told.force) : null;
+  constructor(data) {
+    Object.assign(this, data);
+    this.closed = doubles(data.closed);
+    this.t = data.t ? doubles(data.t) : null;
+    this.force = data.force ? floats(data.force) : null;
   }
 
   holds(time) { return upTo(this.closed, time) % 2 === 1; }
@@ -36,10 +36,10 @@ class Contact {
 
   // Force on body `on`, one of its two (N), as x, y.
   on(body, time, nx, ny) {
-    const told = this.press(time);
-    if (!told) return null;
+    const force = this.press(time);
+    if (!force) return null;
     const sign = body === this.a[0] ? 1 : -1;
-    return [sign * (told[0] * nx - told[1] * ny), sign * (told[0] * ny + told[1] * nx)];
+    return [sign * (force[0] * nx - force[1] * ny), sign * (force[0] * ny + force[1] * nx)];
   }
 }
 
@@ -47,7 +47,7 @@ const LONG_ARROW = 0.22, USUAL = 0.97, NO_FORCE = 1e-13; // N; less is rounding
 
 class Contacts {
   constructor(data) {
-    this.all = data.contacts.map((told) => new Contact(told));
+    this.all = data.contacts.map((one) => new Contact(one));
     this.ranks = data.ranks;
     const sizes = this.all.flatMap((one) => (one.force ? Array.from({ length: one.t.length }, (_, i) => Math.hypot(one.force[2 * i], one.force[2 * i + 1])) : []));
     sizes.sort((x, y) => x - y);
@@ -64,7 +64,7 @@ class Contacts {
   draw(ctx, view, poses, time, look, points, arrows) {
     view.plain(ctx);
     const scale = arrows && this.known ? (LONG_ARROW * Math.min(view.width, view.height)) / this.usual : 0;
-    const told = [];
+    const shown = [];
     for (const one of this.all) {
       if (!one.holds(time)) continue;
       const [x, y, nx, ny] = one.touch(view, poses), [px, py] = view.screen(x, y);
@@ -75,9 +75,9 @@ class Contacts {
       }
       if (!scale) continue;
       const force = one.on(this.shownOn(one, look.chosen), time, nx, ny);
-      if (force) told.push([px, py, force]);
+      if (force) shown.push([px, py, force]);
     }
-    for (const [px, py, force] of told) arrow(ctx, view, px, py, force, scale, look);
+    for (const [px, py, force] of shown) arrow(ctx, view, px, py, force, scale, look);
     if (scale) this.bar(ctx, view, scale, look);
   }
 

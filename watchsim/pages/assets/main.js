@@ -53,22 +53,22 @@ const drawTrack = () => {
 };
 
 // The words beside the picture.
-let toldAt = "", announced = "";
+let shownAt = "", announced = "";
 const words = () => {
   $("time").textContent = timeText(player.t);
   const rate = clock.rate(player.t);
   const pace = speedText(rate);
   $("pace").textContent = pace.startsWith("1/") ? `${pace} of true speed` : pace;
   const phase = player.phase(), line = `${phase}|${player.note}`;
-  if (line !== toldAt) {
-    toldAt = line;
+  if (line !== shownAt) {
+    shownAt = line;
     const strong = document.createElement("b"), note = document.createElement("span");
     strong.textContent = phase; note.textContent = player.note;
     $("said").replaceChildren(...(phase ? [strong, document.createElement("br")] : []), ...(player.note && player.note !== phase ? [note] : []));
   }
   if (!player.playing) {
-    const told = [timeText(player.t), phase, player.note === phase ? "" : player.note].filter(Boolean).join(", ");
-    if (told !== announced) { announced = told; $("now").textContent = told; }
+    const spoken = [timeText(player.t), phase, player.note === phase ? "" : player.note].filter(Boolean).join(", ");
+    if (spoken !== announced) { announced = spoken; $("now").textContent = spoken; }
   }
   $("scrub").value = String(Math.round((10000 * (player.t - player.start)) / span));
   $("scrub").setAttribute("aria-valuetext", timeText(player.t));

@@ -86,21 +86,21 @@ class Plots {
     }, { passive: false });
   }
 
-  // What uPlot is told once: colours are asked for at every drawing, the cursor goes where the player is and nowhere else.
+  // What uPlot gets once: colours are asked for at every drawing, the cursor goes where the player is and nowhere else.
   options(panel) {
     const colour = (name) => () => this.look[name], still = () => null;
     const font = "11.5px sans-serif", grid = { stroke: colour("grid"), width: 1 }, axis = { stroke: colour("faint"), font, grid };
-    const told = (_, splits, __, ___, step) => splits.map((value) => minus(value.toFixed(decimals(step))));
+    const labels = (_, splits, __, ___, step) => splits.map((value) => minus(value.toFixed(decimals(step))));
     // At the ends of the time axis stand its unit and the second that it counts from.
     const times = (chart, splits, _, __, step) => {
       const [from, to] = panel.shown, width = chart.width - AXIS - SIDES[1], x = (value) => ((value - from) / (to - from)) * width;
-      return told(chart, splits, _, __, step).map((text, k) => (x(splits[k]) > width - 34 || (panel.field.dataset.from && x(splits[k]) < 34) ? "" : text));
+      return labels(chart, splits, _, __, step).map((text, k) => (x(splits[k]) > width - 34 || (panel.field.dataset.from && x(splits[k]) < 34) ? "" : text));
     };
     return {
       width: 300, height: 132, padding: SIDES, legend: { show: false }, ms: 1,
       cursor: { x: true, y: false, drag: { x: false, y: false }, points: { show: false }, bind: { mousemove: still, mouseenter: still, mouseleave: still, mousedown: still, mouseup: still, dblclick: still } },
       scales: { x: { time: false, range: () => panel.shown }, y: { range: () => panel.limits ?? [0, 1] } },
-      axes: [{ ...axis, size: FOOT, gap: 3, space: 70, grid: { show: false }, border: { show: true, stroke: colour("edgeLine"), width: 1 }, ticks: { stroke: colour("edgeLine"), size: 4, width: 1 }, values: times }, { ...axis, size: AXIS, gap: 4, space: 24, ticks: { show: false }, values: told }],
+      axes: [{ ...axis, size: FOOT, gap: 3, space: 70, grid: { show: false }, border: { show: true, stroke: colour("edgeLine"), width: 1 }, ticks: { stroke: colour("edgeLine"), size: 4, width: 1 }, values: times }, { ...axis, size: AXIS, gap: 4, space: 24, ticks: { show: false }, values: labels }],
       series: [{}, ...panel.lines.map((line) => ({ stroke: colour(line.colour), width: 1.7, pxAlign: 0, points: { show: false }, ...(line.area ? { fill: () => `${this.look[line.colour]}40`, fillTo: 0 } : {}) }))],
       hooks: { drawClear: [(chart) => this.shade(chart)] },
     };

@@ -24,8 +24,8 @@ class Scenery {
     this.bodies = data.bodies;
     this.parts = data.parts.map((part) => ({ ...part, path: pathOf(part), strokes: part.ground ? strokesOf(part.ground) : null }));
     // What never moves lies below what does, but for what cannot touch and is larger than all that can: a balance's rim.
-    this.coils = data.coils.map((told) => new Coil(told));
-    this.zigzags = data.line_springs.map((told) => new Zigzag(told));
+    this.coils = data.coils.map((one) => new Coil(one));
+    this.zigzags = data.line_springs.map((one) => new Zigzag(one));
     this.still = this.parts.filter((part) => data.bodies[part.body].still);
     const moving = this.parts.filter((part) => !data.bodies[part.body].still), first = moving.findIndex((part) => !part.pale);
     this.behind = moving.slice(0, first < 0 ? moving.length : first);

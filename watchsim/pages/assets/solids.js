@@ -39,7 +39,7 @@ const linear = (colour) => [1, 3, 5].map((k) => { const c = parseInt(colour.slic
 
 class Solids {
   constructor(data, canvas) {
-    this.solids = data.solids; this.coils = data.coils.map((told) => new Coil(told));
+    this.solids = data.solids; this.coils = data.coils.map((one) => new Coil(one));
     this.canvas = canvas; this.on = false; this.gl = null;
     this.level();
   }

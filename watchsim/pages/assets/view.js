@@ -3,10 +3,10 @@ const MARGIN = 0.05, QUARTER_GAIN = 1.25, CLOSEST = 4000, FARTHEST = 0.2, BAND =
 
 class View {
   constructor(data) {
-    this.told = data.view;
+    this.data = data.view;
     this.width = this.height = 1; this.ratio = 1;
     this.zoom = 1; this.shift = [0, 0]; // of the picture, in metres of the mechanism
-    this.turn = this.told.turn;
+    this.turn = this.data.turn;
     this.centre = [0, 0]; this.base = 1;
     this.anchor = null; // a point of a body that stays in the middle: [body, x, y]
   }
@@ -17,9 +17,9 @@ class View {
     Object.assign(this, { width, height, ratio });
     const high = Math.max(height - 2 * BAND, 40);
     const fits = (box) => (1 - 2 * MARGIN) * Math.min(width / Math.max(box[3] - box[1], 1e-12), high / Math.max(box[4] - box[2], 1e-12));
-    if (this.told.follow) { this.base = Math.min(height, width * 0.5625) / this.told.follow.sight; return; }
-    let box = this.told.boxes[0];
-    if (this.told.boxes.length > 1 && fits(this.told.boxes[1]) > QUARTER_GAIN * fits(box)) box = this.told.boxes[1];
+    if (this.data.follow) { this.base = Math.min(height, width * 0.5625) / this.data.follow.sight; return; }
+    let box = this.data.boxes[0];
+    if (this.data.boxes.length > 1 && fits(this.data.boxes[1]) > QUARTER_GAIN * fits(box)) box = this.data.boxes[1];
     this.turn = box[0];
     this.base = fits(box);
     const c = Math.cos(this.turn), s = Math.sin(this.turn), x = 0.5 * (box[1] + box[3]), y = 0.5 * (box[2] + box[4]);
@@ -28,7 +28,7 @@ class View {
 
   // Put the middle of the picture where it belongs for these poses.
   aim(poses) {
-    const follow = this.told.follow;
+    const follow = this.data.follow;
     let middle = this.home;
     if (this.anchor) middle = this.point(poses, ...this.anchor);
     else if (follow) {

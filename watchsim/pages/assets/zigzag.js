@@ -1,6 +1,6 @@
 // A spring between two points: drawn as a helical one is seen from the side. The same shape as in movies.
 class Zigzag {
-  constructor(told) { Object.assign(this, told); }
+  constructor(data) { Object.assign(this, data); }
 
   end(view, poses, k) {
     const [x, y] = this.points[k];
