@@ -6,6 +6,7 @@ import json
 import math
 import re
 from dataclasses import replace
+from itertools import combinations
 
 import pytest
 from escapement.made import swiss_scene
@@ -15,7 +16,9 @@ from watchsim.cli import main
 from watchsim.commands.console import BAD_INPUT, FINE
 from watchsim.escapement.function_report import judgements
 from watchsim.escapement.measure import measure
+from watchsim.mechanism.compile import compile_scene
 from watchsim.paths import profiles_dir
+from watchsim.render.function_sheet import function_sheet
 from watchsim.scene.load import load
 
 SWISS = profiles_dir() / "swiss_lever" / "scene.toml"
@@ -116,6 +119,23 @@ def test_the_sheet(ending, tmp_path, capsys):
     assert not re.search(rb"<dc:date>|CreationDate", first)
     assert main(["check", str(SWISS), "--sheet", str(path), "--width", "85 mm"]) == FINE
     assert path.read_bytes() == first
+
+
+@pytest.mark.parametrize("width", [85.0, 170.0])
+def test_views_and_words_of_the_sheet_stand_beside_each_other(width):
+    """In the order that their numbers say, none over another, all on the page."""
+    scene = load(SWISS)
+    figure = function_sheet(scene, compile_scene(scene), measure(scene), width)
+    boxes = [axes.get_position() for axes in figure.axes]
+    lines = [text.get_position()[1] for text in figure.texts if text.get_family() == ["monospace"]]
+    assert (
+        len(boxes) >= 6
+        and lines
+        and all(0.0 <= box.x0 < box.x1 <= 1.0 and max(lines) < box.y0 < box.y1 <= 1.0 for box in boxes)
+    )
+    for one, other in combinations(boxes, 2):
+        assert one.x1 <= other.x0 or other.x1 <= one.x0 or one.y1 <= other.y0 or other.y1 <= one.y0
+        assert one.y1 > other.y0
 
 
 def test_the_picture_has_the_sheet_beside_it(tmp_path, capsys):

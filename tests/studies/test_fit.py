@@ -154,6 +154,11 @@ def test_a_recording(tmp_path):
             ['"x" is no number', "row 4", "first limit"],
         ),
         ("t_s,angle_deg\n0,1\n2,1\n1,3\n", ["--vary", "springs.0.stiffness"], ["grow from row to row"]),
+        (
+            "t_s,angle_deg,angle_deg_error\n0,1,0.1\n0.1,0.9,0\n0.2,0.8,\n",
+            ["--vary", KEYS[0]],
+            ["standard errors must be above zero"],
+        ),
         ("t_s,angle_deg\n0,1\n", ["--vary", "springs.0.stiffness", "--vary", "damping.0.viscous"], ["cannot decide 2"]),
         ("position,rate_s_per_d\nXX,1\n", ["--vary", "springs.0.stiffness"], ['"XX" is no position']),
         ("wound_h,rate_s_per_d\n2,1\n", ["--vary", "springs.0.stiffness"], ["needs a mainspring"]),
