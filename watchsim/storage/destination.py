@@ -5,6 +5,7 @@ The system takes it away should the process end before. Linux can give it a name
 
 from __future__ import annotations
 
+import errno
 import os
 import shutil
 import stat
@@ -59,13 +60,14 @@ def _looked_up(target: Path, what: str) -> Path:
     if not target.is_symlink():
         return real(target)
     try:
-        place = real(target)
-        exists = place.exists()
-    except PermissionError:
-        raise
-    except (OSError, RuntimeError):  # links in a circle
-        exists = False
-    if not exists:
+        target.stat()
+    except OSError as error:
+        if error.errno == errno.ELOOP:
+            raise OSError(
+                f"{target} is a link to {target.readlink()}, which leads back to it: {what} would go nowhere"
+            ) from error
+    place = real(target)
+    if not place.exists():
         raise FileNotFoundError(f"{target} is a link to {target.readlink()}, which does not exist: {what} would go nowhere")
     return place
 
