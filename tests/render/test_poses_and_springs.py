@@ -35,6 +35,7 @@ from watchsim.render.view import (
     placed,
     poses,
     recorded,
+    room_for,
     sampled,
     stretch,
     swept,
@@ -239,6 +240,12 @@ def test_collet_and_stud_are_where_the_balance_and_the_movement_have_them() -> N
         assert line[0] == pytest.approx((x + COIL.inner * math.cos(start), y + COIL.inner * math.sin(start)), abs=1e-12)
         assert line[-1] == pytest.approx((COIL.outer * math.cos(0.5), 7 * MM + COIL.outer * math.sin(0.5)), abs=1e-12)
         assert spring.stud(frames)[:-1].mean(axis=0) == pytest.approx(line[-1], abs=1e-12)
+
+
+def test_room_is_made_about_the_body_that_has_the_hairspring() -> None:
+    scene = run_with_rim().scene
+    assert np.hypot(*room_for(scene, "balance").T).min() > COIL.outer
+    assert not len(room_for(scene, "wheel"))
 
 
 def test_on_a_carriage_the_stud_turns_with_it() -> None:
