@@ -108,6 +108,7 @@ COORDINATE = np.dtype(
         *((law, "f8") for law in DAMPING_LAWS),
         ("coulomb", "f8"),  # dry friction of the bearing, N or N·m
         ("stiffness", "f8"),
+        ("cubic", "f8"),  # of the spring: force by the cube of the way from rest, N·m/rad³ or N/m³
         ("rest", "f8"),
         ("level", "f8"),  # where it stands in balance: passages of it are events
         ("watched", "i8"),  # 1: its turning points and passages are events

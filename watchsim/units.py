@@ -73,12 +73,14 @@ ROTARY_QUADRATIC = Dimension("rotary quadratic damping", ((2, 1, 0, -2, 0),), "N
 LINEAR_QUADRATIC = Dimension("quadratic damping", ((-1, 1, 0, 0, 0),), "N·s²/m²", ("mN·s²/m²", "N·s²/m²"))
 TRAVEL_PER_TURN = Dimension("travel per angle", ((1, 0, 0, -1, 0), (1, 0, 0, 0, 0)), "m/rad", ("mm/rev", "mm/rad"))
 PER_LENGTH = Dimension("angle per travel", ((-1, 0, 0, 1, 0),), "rad/m", ("rev/mm", "rad/mm"))
+ROTARY_CUBIC = Dimension("rotary cubic stiffness", ((2, 1, -2, -3, 0),), "N·m/rad³", ("mN·m/rad³", "µN·m/rad³"))
+LINEAR_CUBIC = Dimension("cubic stiffness", ((-2, 1, -2, 0, 0),), "N/m³", ("N/mm³", "N/m³"))
 TEMPERATURE = Dimension("temperature", ((0, 0, 0, 0, 1),), "°C", ("°C", "°C"))  # nothing here needs its absolute value
 PER_KELVIN = Dimension("temperature coefficient", ((0, 0, 0, 0, -1),), "/K", ("ppm/K", "ppm/K"))
 DIMENSIONS = (
     *(NUMBER, ANGLE, SPIN, LENGTH, MASS, TIME, SPEED, ACCELERATION, PRESSURE, DENSITY, INERTIA, TORQUE, FORCE, FREQUENCY),
     *(ROTARY_STIFFNESS, LINEAR_STIFFNESS, ROTARY_VISCOUS, LINEAR_VISCOUS, ROTARY_QUADRATIC, LINEAR_QUADRATIC, RATE),
-    *(TRAVEL_PER_TURN, PER_LENGTH, TEMPERATURE, PER_KELVIN),
+    *(TRAVEL_PER_TURN, PER_LENGTH, ROTARY_CUBIC, LINEAR_CUBIC, TEMPERATURE, PER_KELVIN),
 )
 
 _PREFIXES = {"n": -9, "µ": -6, "u": -6, "m": -3, "c": -2, "d": -1, "k": 3, "M": 6, "G": 9}

@@ -314,6 +314,12 @@ SPRINGS = [
     (spring("s", LEAF_SPRINGS_READ % ""), Spring("s", BENT)),
     (spring("s", 'against = "t"\nstiffness = "4 N/m"\npreload = "2 N"\n'), Spring("s", 4.0, 0.5, against="t")),
     (spring("a", 'against = "d"\nstiffness = "4 N·m/rad"\npreload = "2 N·m"\n'), Spring("a", 4.0, 0.5 + TURN(30), against="d")),
+    (spring("a", 'stiffness = "4 N·m/rad"\ncubic = "-3 µN·m/rad³"\n'), Spring("a", 4.0, cubic=-3e-6)),
+    (spring("s", 'stiffness = "4 N/m"\ncubic = "2 N/mm³"\n'), Spring("s", 4.0, cubic=2e9)),
+    (spring("s", 'stiffness = "4 N/m"\ncubic = "2 N·m/rad³"\n'), None),
+    (spring("s", 'against = "t"\nstiffness = "4 N/m"\ncubic = "2 N/m³"\n'), None),
+    (spring("s", 'stiffness = "4 N/m"\ncubic = "2 N/m³"\n') + spring("s", 'stiffness = "1 N/m"\n'), None),
+    ('[bodies.c]\non = "a"\ninertia = "5 g·cm²"\n' + spring("c", 'stiffness = "4 N·m/rad"\ncubic = "2 N·m/rad³"\n'), None),
     (spring("d", 'stiffness = "4 N·m/rad"\n'), None),
     (spring("b", 'stiffness = "4 N·m/rad"\n'), None),
     (spring("a", 'against = "s"\nstiffness = "4 N·m/rad"\n'), None),
@@ -330,7 +336,7 @@ def test_a_spring_on_a_coordinate(text: str, expected: Spring | None) -> None:
     (found,) = read(BODIES + text).springs
     for name in ("body", "against", "coil"):
         assert getattr(found, name) == getattr(expected, name)
-    for name in ("stiffness", "rest", "frequency", "stop", "restitution"):
+    for name in ("stiffness", "cubic", "rest", "frequency", "stop", "restitution"):
         one, other = getattr(found, name), getattr(expected, name)
         assert one is None if other is None else one == pytest.approx(other, rel=1e-12, abs=0.0), name
 

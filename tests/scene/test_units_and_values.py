@@ -106,6 +106,8 @@ WORTH: dict[Dimension, dict[str, float | None]] = {
     units.ROTARY_QUADRATIC: {"N·m·s²/rad²": 1.0, "µN·m·s²/rad²": 1e-6, "nN·m·s²/rad²": 1e-9, "N·m·s²/rad^2": 1.0},
     units.LINEAR_QUADRATIC: {"N·s²/m²": 1.0, "mN·s²/m²": 1e-3, "kg/m": 1.0},
     units.TRAVEL_PER_TURN: {"m/rad": 1.0, "mm/rev": 1.5915494309189535e-04, "mm/rad": 1e-3, "mm": 1e-3},
+    units.ROTARY_CUBIC: {"N·m/rad³": 1.0, "mN·m/rad³": 1e-3, "µN·m/rad^3": 1e-6},
+    units.LINEAR_CUBIC: {"N/m³": 1.0, "N/mm³": 1e9, "N/m^3": 1.0},
     units.TEMPERATURE: {"°C": 1.0, "K": 1.0},
     units.PER_KELVIN: {"/K": 1.0, "%/K": 0.01, "ppm/K": 1e-6, "ppm/°C": 1e-6},
     units.PER_LENGTH: {"rad/m": 1.0, "rev/mm": 6283.185307179586, "rad/mm": 1e3},
@@ -124,8 +126,8 @@ def test_what_a_unit_is_worth(kind: Dimension) -> None:
 
 
 def test_every_kind_of_quantity_is_listed() -> None:
-    assert set(DIMENSIONS) == set(WORTH) and len(DIMENSIONS) == 25
-    assert len({kind.name for kind in DIMENSIONS}) == 25
+    assert set(DIMENSIONS) == set(WORTH) and len(DIMENSIONS) == 27
+    assert len({kind.name for kind in DIMENSIONS}) == 27
 
 
 ALIKE = {frozenset((NUMBER, RATE)), frozenset((units.LENGTH, units.TRAVEL_PER_TURN))}  # the mm of a travel per angle

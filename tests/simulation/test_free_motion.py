@@ -13,7 +13,7 @@ import pytest
 from moving_scenes import PROFILES, circle, of_kind, tip, touching
 from mpmath import mp, mpf
 from plain_kernels import in_python
-from reference import block, oscillator, pendulum, rolling
+from reference import block, duffing, oscillator, pendulum, rolling
 from reference.oscillator import Oscillator
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
@@ -316,6 +316,33 @@ def test_damped_oscillator(viscous: float, tolerance: float) -> None:
     )
     q, u = run(scene).at(1.7)
     assert (q[0], u[0]) == pytest.approx(oscillator.motion(truth, 0.7, -1.1, 1.7), abs=10.0 * tolerance)
+
+
+@pytest.mark.parametrize("cubic", [4.0, 0.3, -0.8])
+@pytest.mark.parametrize("amplitude", [0.4, 4.7])
+def test_spring_whose_stiffness_changes_with_the_angle(cubic: float, amplitude: float) -> None:
+    """Place, period and energy of Duffing's oscillator; between its rows, too. The twin comes to it in second order."""
+    inertia, stiffness, rest = 0.7, 30.0, 0.2
+    scene = Scene(
+        "rotor",
+        (Body("rotor", angle=rest + amplitude, inertia=inertia),),
+        springs=(Spring("rotor", stiffness, rest, cubic=cubic),),
+        duration=10.0,
+        tolerance=1e-12,
+    )
+    done = run(scene)
+    for t in (0.1234, 3.21, 10.0):
+        q, u = done.at(t)
+        angle, rate = duffing.swing(t, amplitude, inertia, stiffness, cubic)
+        assert (q[0] - rest, u[0]) == pytest.approx((angle, rate), abs=1e-8)
+    turns = done.events[done.events["kind"] == EventKind.TURN]["t"]
+    truth = duffing.period(amplitude, inertia, stiffness, cubic)
+    assert np.diff(turns)[:8] == pytest.approx(np.full(8, 0.5 * truth), rel=1e-9)
+    assert abs(done.energy["residual_J"]) < 1e-9 * stiffness * amplitude**2
+    end = duffing.swing(1.0, amplitude, inertia, stiffness, cubic)[0]
+    steps = (2e-3, 1e-3)
+    off = [abs(simulate(scene, 1.0, method="moreau", step=step).q[-1][0] - rest - end) for step in steps]
+    assert off[1] < 1e-3 * amplitude and 3.5 < off[0] / off[1] < 4.5
 
 
 @pytest.mark.parametrize("amplitude", [0.3, 2.5])

@@ -158,6 +158,16 @@ def test_where_there_is_no_cycle(profile, torque, verdict):
     assert cycle.amplitude_deg is None
 
 
+@pytest.mark.parametrize("share", [1e-5, -1e-5])
+def test_a_spring_that_stiffens_with_the_angle_makes_the_rate_depend_on_the_swing(swiss: Scene, share: float) -> None:
+    """By 86400 · 3 c A² / (8 k) s/d, Duffing's backbone to first order; with an energy ledger that closes."""
+    curved = swiss.set("springs.0.cubic", share * swiss.springs[0].stiffness)
+    plain, cycle = ws.steady(swiss), ws.steady(curved)
+    swing = math.radians(cycle.amplitude_deg)
+    assert cycle.rate_s_per_d - plain.rate_s_per_d == pytest.approx(86400 * 3 * share * swing**2 / 8, rel=2e-3)
+    assert abs(ws.simulate(curved, 2.0).energy["residual_relative"]) < 1e-9
+
+
 def test_a_balance_alone(bench):
     """Its swing dies away by exp(-π / √(Q² - 1/4)) in an oscillation."""
     cycle = steady(ws.load(ws.profiles_dir() / "balance"))

@@ -225,11 +225,15 @@ def table_value(model, table, x):
 
 @kernel
 def driving_force(model, i, q):
-    """Constant force of coordinate i, plus gravity on an excentric rotor: torque m (r × g) with r turned by q."""
+    """Constant force of coordinate i, plus gravity on an excentric rotor, torque m (r × g) with r turned by q, and the cubic
+    part of a spring."""
     coordinate = model.coordinates[i]
     force = coordinate.force
     if coordinate.weight_x != 0.0 or coordinate.weight_y != 0.0:
         force += math.cos(q) * coordinate.weight_y - math.sin(q) * coordinate.weight_x
+    if coordinate.cubic != 0.0:
+        way = q - coordinate.rest
+        force -= coordinate.cubic * way * way * way
     return force
 
 

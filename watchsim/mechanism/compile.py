@@ -141,6 +141,8 @@ def forced_coordinates(
         rest = targets.place(spring.body, spring.rest, spring.against)
         row.rest = (row.stiffness * row.rest + stiffness * rest) / total
         row.stiffness = total
+        if spring.cubic:
+            row.cubic = spring.cubic * targets.ratio(spring.body) ** 4
     stiffest = _watch(scene, targets)
     for damping in scene.damping:
         row, ratio = targets.row(damping.body, damping.against), abs(targets.ratio(damping.body))
@@ -160,6 +162,7 @@ def forced_coordinates(
     jointed = {*joints.coordinate.tolist(), *joints.on.tolist(), *(k for k, _ in held)}
     for i, row in enumerate(rows):
         bent = any(row[law] != 0.0 for law, power in DAMPING_LAWS.items() if power != 1)
+        bent = bent or row.cubic != 0.0
         row.linear = not bent and row.weight_x == 0.0 and row.weight_y == 0.0 and i not in tabled | jointed
     inverse = np.where(rows.driven != 0, 0.0, 1.0 / rows.mass)
     light = 1.0 / (inverse[joints.coordinate] + inverse[joints.on])

@@ -16,7 +16,7 @@ from watchsim.geometry.primitives import Point
 
 @dataclass(frozen=True, slots=True)
 class Spring:
-    """A spring: -stiffness (q - rest), N·m/rad or N/m.
+    """A spring: -stiffness (q - rest) - cubic (q - rest)³, N·m/rad or N/m, N·m/rad³ or N/m³.
 
     `frequency` (Hz) where that is how it was given; `coil` is how it is drawn. At `stop` (rad or m) the body comes to a stop on
     its way to `rest`, with impacts of Poisson's `restitution`.
@@ -30,6 +30,7 @@ class Spring:
     against: str | None = None
     stop: float | None = None
     restitution: float = 0.0
+    cubic: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -261,6 +261,7 @@ SPRING: Keys = {
         limits=_above_zero("a spring pulls back"),
         instead_of=("frequency", "leaf"),
     ),
+    "cubic": Key(units.ROTARY_CUBIC, units.LINEAR_CUBIC, doc="stiffness that grows with the square of the way from rest"),
     "rest": Key(units.ANGLE, units.LENGTH, doc="where it does not act", instead_of=("preload",)),
     "draw": Key(doc="the hairspring that pictures show", inner=COIL, form=TABLE),
     "against": _AGAINST,

@@ -224,7 +224,15 @@ class Entry:
 
 
 def read_springs(mapping: Mapping[str, Any], bodies: tuple[Body, ...], faults: Faults) -> tuple[Spring, ...]:
-    entries = _entries(mapping, "springs", SPRING, bodies, faults)
+    entries = list(_entries(mapping, "springs", SPRING, bodies, faults))
+    holders = [one.body.geared.to if one.body and one.body.geared else one.name for one in entries]
+    for entry, holder in zip(entries, holders, strict=True):
+        if "cubic" not in entry.table or entry.body is None:
+            continue
+        if entry.other is not None or entry.body.on is not None:
+            entry.table.fault("cubic", "is for a spring that is fixed in the movement, on a body that nothing carries")
+        elif holders.count(holder) > 1:
+            entry.table.fault("cubic", f"several springs act on {holder} as one, at their common rest: write one")
     return tuple(_spring(entry) for entry in entries)
 
 
@@ -281,7 +289,7 @@ def _spring(entry: Entry) -> Spring:
     coil = read_coil(entry.table, entry.body)
     rest = read_rest(entry.table, entry.body, stiffness, entry.other)
     stop = read_stop(entry.table, entry.body, entry.other, rest)
-    return Spring(entry.name, stiffness, rest, frequency, coil, entry.against, *stop)
+    return Spring(entry.name, stiffness, rest, frequency, coil, entry.against, *stop, entry.table.quantity("cubic"))
 
 
 def _spring_stiffness(entry: Entry) -> float:

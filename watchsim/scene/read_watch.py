@@ -98,7 +98,8 @@ def _warmed(scene: Scene, by: Mapping[str, float]) -> Scene:
     return replace(
         scene,
         springs=tuple(
-            replace(one, stiffness=one.stiffness * stiffness) if one.body == swinging else one for one in scene.springs
+            replace(one, stiffness=one.stiffness * stiffness, cubic=one.cubic * stiffness) if one.body == swinging else one
+            for one in scene.springs
         ),
         bodies=tuple(replace(one, inertia=one.inertia * inertia) if one.name == swinging else one for one in scene.bodies),
         damping=tuple(
