@@ -26,6 +26,7 @@ from typing import TYPE_CHECKING, Any
 
 from watchsim.live.edit import knobs, values
 from watchsim.scene.errors import SceneError
+from watchsim.scene.keys import DESIGN
 from watchsim.scene.load import load_set
 from watchsim.scene.scene import Scene
 
@@ -270,13 +271,11 @@ def _compared(reference: Side | None, side: Side) -> dict[str, Any]:
     from watchsim.studies.compare import changed_rows, compare, result_rows
 
     found: Comparison = compare(reference or side, side)
-    works = None if side.verdict is None else side.verdict == "ticks"
-    return {
-        "first": reference is None,
-        "changed": changed_rows(found),
-        "results": result_rows(found, SHOWN),
-        "works": works,
-    } | {"message": side.message}
+    changed, design = changed_rows(found), f"{DESIGN}."
+    if any(key.startswith(design) for key, *_ in changed):  # the drawings follow from its dimensions
+        changed = [row for row in changed if not row[0].endswith(".drawing")]
+    results = result_rows(found, SHOWN)
+    return {"first": reference is None, "changed": changed, "results": results, "message": side.message}
 
 
 def _motion(run: Trajectory) -> dict[str, Any]:

@@ -170,6 +170,8 @@ class Live:
                 "The process that computes was ended from outside, perhaps for lack of memory. The next save begins a new one."
             )
             self._put("faults", order=self._number, faults=[words], drawings=[])
+        elif answer.kind == "faults" and self._look() != self._seen:
+            return  # it was read while it was saved: the next order is on its way
         elif answer.number == self._number:
             if answer.kind == "scene":
                 self._state.pop("faults", None)

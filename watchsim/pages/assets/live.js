@@ -26,6 +26,7 @@ heard("status", (told) => {
 });
 heard("scene", (told) => {
   $("faults").hidden = faulty.hidden = true;
+  root.classList.remove("faulted");
   document.title = document.querySelector("h1").textContent = told.title;
   drawers(told);
 });
@@ -51,8 +52,8 @@ heard("motion", (told) => {
 heard("faults", (told) => {
   const box = $("faults"), count = told.faults.length;
   numbersIn = "";
-  doing(count === 1 ? "A fault: what is shown below is older." : `${count} faults: what is shown below is older.`);
-  $("outcome").classList.add("old");
+  doing(count === 1 ? "A fault; no result." : `${count} faults; no result.`);
+  root.classList.add("faulted");
   box.replaceChildren(tag("b", "Nothing can be computed of what was saved:"), ...told.faults.map((text) => tag("pre", text)));
   for (const one of told.drawings) {
     const list = document.createElement("ol");
@@ -71,7 +72,7 @@ news.onopen = () => { if (order && order === shownOrder) doing("Connected again.
 const showOutcome = (told) => {
   const tableOf = (caption, head, rows) => {
     const made = document.createElement("table"), body = made.createTBody(), top = made.createTHead().insertRow();
-    made.className = "numbers"; made.createCaption().textContent = caption;
+    made.className = "numbers";
     for (const text of head) top.append(tag("th", text, { scope: "col" }));
     for (const [first, ...rest] of rows) { const row = body.insertRow(); row.append(tag("th", first, { scope: "row" }), ...rest.map((text, k) => tag("td", text, { className: k === 2 && /[1-9]/.test(text) ? "more" : "" }))); }
     const frame = tag("div", "", { className: "scroll", tabIndex: 0 });
@@ -79,8 +80,8 @@ const showOutcome = (told) => {
     return frame;
   };
   const results = told.first ? told.results.map(([name, , value]) => [name, value]) : told.results;
-  const parts = told.changed.length ? [tableOf("In the scene", ["", "before", "now"], told.changed)] : [];
-  parts.push(tableOf("Result", told.first ? ["", "now"] : ["", "before", "now", "difference", "±"], results));
+  const parts = told.changed.length ? [tableOf("In the scene", ["changed", "before", "now"], told.changed)] : [];
+  parts.push(tableOf("Result", told.first ? ["result", "now"] : ["result", "before", "now", "difference", "±"], results));
   if (told.message) parts.push(tag("p", told.message));
   $("outcome").replaceChildren(...parts);
 };
