@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import builtins
 import os
+import signal
 import socket
 import time
 from collections.abc import Callable
@@ -192,6 +193,18 @@ def test_a_change_is_compared_saved_and_taken_back(tmp_path: Path) -> None:
         follower.until("motion", 3)
         assert path.read_text(encoding="utf-8") == DESIGNED
         assert follower.ask("POST", "/undo")[0] == 409
+
+
+@pytest.mark.slow
+def test_the_next_save_begins_a_new_engine_where_one_was_ended_from_outside(tmp_path: Path) -> None:
+    scene = copied("incline", tmp_path) / "scene.toml"
+    with following(scene) as follower:
+        follower.until("motion", 1)
+        for number in descendants(follower):
+            os.kill(number, signal.SIGKILL)
+        assert "ended from outside" in follower.until("faults", 1)["faults"][0]
+        scene.write_text(scene.read_text(encoding="utf-8") + "\n# again\n", encoding="utf-8")
+        follower.until("motion", 2)
 
 
 @pytest.mark.slow

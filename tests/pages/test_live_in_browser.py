@@ -48,7 +48,8 @@ def test_time_view_and_zoom_are_kept_and_the_old_outline_is_a_ghost(tmp_path: Pa
         assert before["ghost"] == 0 < after["ghost"]
         page.press("body", "g")
         assert page.evaluate("watchsim.live().ghost") == 0
-        assert "design.lock" in page.inner_text("#outcome")
+        assert "design.lock" in page.inner_text("#outcome") and "dxf" not in page.inner_text("#outcome")
+        until(page, "document.querySelectorAll('#sheet > section').length > 3 && document.querySelector('.verdict') !== null")
         assert page.said == []
         assert {address.partition("/")[2].partition("/")[2].partition("/")[0] for address in page.asked} == {follower.address}
 
@@ -111,6 +112,7 @@ def test_the_panel_has_no_barriers(tmp_path: Path, scheme: str) -> None:
         path.write_text(DESIGNED.replace("1.5°", "1.9°"), encoding="utf-8")
         shown(page, 2)
         page.locator("summary", has_text="Numbers").click()
+        until(page, "!document.documentElement.classList.contains('dated')")
         found = axe.Axe().run(page)
         assert [(one["id"], [node["target"] for node in one["nodes"]]) for one in found.response["violations"]] == []
         path.write_text(DESIGNED.replace("1.5°", "80°"), encoding="utf-8")

@@ -59,8 +59,8 @@ class Order:
 class Answer:
     """One of the things that come of an order.
 
-    kind   "scene" (it was read), "faults", "numbers", "progress", "motion" (the last), "lost" (the process was)
-    value  what the page gets; of "motion" its parts and data
+    kind   "scene" (it was read), "faults", "numbers", "progress", "motion", "sheet" (the last), "lost" (the process was)
+    value  what the page gets; of "motion" the data of the player and what stands around it
     side   with "motion": what later results are compared with
     """
 
@@ -74,12 +74,12 @@ Send = Callable[[Answer], None]
 
 
 class Engine:
-    """The process, and a thread that hands its answers to `heard`; `close` ends both."""
+    """The process, which begins with the first order, and a thread that hands its answers to `heard`; `close` ends both."""
 
-    def __init__(self, path: Path, heard: Callable[[Answer], object]) -> None:
+    def __init__(self, first: Order, heard: Callable[[Answer], object]) -> None:
         spawn = multiprocessing.get_context("spawn")
         self._orders, theirs = spawn.Pipe()
-        self._process = spawn.Process(target=serve, args=(theirs, path), name="engine")
+        self._process = spawn.Process(target=serve, args=(theirs, first), name="engine")
         self._process.start()
         theirs.close()
         self._thread = threading.Thread(target=self._listen, args=(heard,), daemon=True, name="answers")
@@ -102,27 +102,27 @@ class Engine:
         heard(Answer(0, "lost", {}))
 
 
-def serve(orders: Connection, path: Path) -> None:
-    """The engine's process: orders in, answers out, until whoever started it has gone. The first order is answered unasked."""
+def serve(orders: Connection, first: Order) -> None:
+    """The engine's process: orders in, answers out, until whoever started it has gone."""
     import signal
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # for the process that started it, which closes the pipe
     with contextlib.suppress(EOFError, OSError):
-        _Server(orders, path).serve()
+        _Server(orders).serve(first)
 
 
 class _Server:
     """One job at a time; `latest` is the result of the last order that was answered to the end."""
 
-    def __init__(self, orders: Connection, path: Path) -> None:
-        self.orders, self.path = orders, path
+    def __init__(self, orders: Connection) -> None:
+        self.orders = orders
         self.reference: Side | None = None
         self.latest: Side | None = None
         self.job: Job | None = None
         self.warm = False
 
-    def serve(self) -> None:
-        self._warm_up(Order(1, self.path, False), self._pass_on)
+    def serve(self, first: Order) -> None:
+        self._warm_up(first, self._pass_on)
         try:
             while True:
                 for ready in wait([self.orders, *([self.job.answers] if self.job else [])]):
@@ -216,6 +216,7 @@ def _answers(order: Order, reference: Side | None, send: Send) -> None:
         give("numbers", **_compared(reference, side))
         run = run or _run(scene, give)
         give("motion", side=replace(side, run=None), **_motion(run))
+        give("sheet", **_sheet(run))
     except SceneError as error:
         faults = [str(fault) for fault in error.faults]
         give("faults", faults=faults, drawings=[])
@@ -279,12 +280,19 @@ def _compared(reference: Side | None, side: Side) -> dict[str, Any]:
 
 
 def _motion(run: Trajectory) -> dict[str, Any]:
-    from watchsim.analysis.summary import summary
     from watchsim.pages.report_page import page_parts
+
+    places, data = page_parts(run)
+    return {"places": {name: str(places[name]) for name in ("poster", "lead", "made")}, "data": data}
+
+
+def _sheet(run: Trajectory) -> dict[str, Any]:
+    from watchsim.analysis.summary import summary
+    from watchsim.pages.timing_sheet import sheet, verdict
     from watchsim.results.tables import plain
 
-    places, data = page_parts(run, numbers=plain(summary(run)))
-    return {"places": {name: str(text) for name, text in places.items()}, "data": data}
+    numbers = plain(summary(run))
+    return {"verdict": str(verdict(numbers) or ""), "sheet": str(sheet(run, numbers))}
 
 
 # What does a drawing with faults look like?

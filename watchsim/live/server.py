@@ -88,10 +88,7 @@ class Live:
     @contextlib.asynccontextmanager
     async def _lifespan(self, _: Starlette) -> AsyncIterator[None]:
         self._news, self._loop, self._lock = asyncio.Event(), asyncio.get_running_loop(), asyncio.Lock()
-        self._seen = self._look()
-        self._number = 1  # what the engine answers unasked
-        self._put("status", order=1, undo=0, hold=False)
-        self._begin_engine()
+        self._order(self._look())
         watching = asyncio.create_task(self._watch())
         self._loop.call_soon(self._ready, self.url)
         try:
@@ -102,9 +99,6 @@ class Live:
                 self._engine.close()
             with contextlib.suppress(asyncio.CancelledError):
                 await watching
-
-    def _begin_engine(self) -> None:
-        self._engine = Engine(self.path, lambda answer: self._loop.call_soon_threadsafe(self._hear, answer))
 
     # What is watched: the folders, since an editor may put another file in the place of one, and the content decides.
 
@@ -153,11 +147,11 @@ class Live:
 
     def _order(self, seen: dict[Path, str]) -> None:
         self._seen, self._number = seen, self._number + 1
+        order = Order(self._number, self.path, self._hold)
         if self._engine is None:
-            self._begin_engine()
-            self._number = 1
-        elif self._engine:
-            self._engine.order(Order(self._number, self.path, self._hold))
+            self._engine = Engine(order, lambda answer: self._loop.call_soon_threadsafe(self._hear, answer))
+        else:
+            self._engine.order(order)
         self._tell_status()
 
     def _tell_status(self) -> None:

@@ -128,4 +128,6 @@ def _saved(left_out: list[str]) -> Markup:
 def _made(numbers: Mapping[str, Any], off: float) -> Markup:
     version = (numbers.get("versions") or {}).get("watchsim")
     exact = f"{1e9 * off:.2g} nm" if off < 1e-6 else f"{1e6 * off:.2g} µm"
-    return joined((f"watchsim {version or ''}. ", f"Outlines stand within {exact} of the motion that was computed."))
+    return joined(
+        (f"watchsim {version}. " if version else "", f"Outlines stand within {exact} of the motion that was computed.")
+    )

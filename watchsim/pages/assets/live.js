@@ -45,9 +45,20 @@ heard("motion", (told) => {
   const held = $("hold").getAttribute("aria-pressed") === "true" && reference;
   reference = held || scenery || null;
   document.querySelector("main").classList.remove("waiting");
-  replaceParts(told.places);
+  $("poster")?.remove();
+  $("picture").insertAdjacentHTML("afterbegin", told.places.poster);
+  document.querySelector(".lead").textContent = told.places.lead;
+  document.querySelector("footer").textContent = told.places.made;
+  root.classList.add("dated"); // the timing sheet follows
   open(told.data);
   haunt();
+});
+heard("sheet", (told) => {
+  root.classList.remove("dated");
+  document.querySelector(".verdict")?.remove();
+  header.insertAdjacentHTML("beforeend", told.verdict);
+  for (const section of document.querySelectorAll("#sheet > section:not(.live)")) section.remove();
+  $("sheet").insertAdjacentHTML("afterbegin", told.sheet);
 });
 heard("faults", (told) => {
   const box = $("faults"), count = told.faults.length;
@@ -86,17 +97,6 @@ const showOutcome = (told) => {
   $("outcome").replaceChildren(...parts);
 };
 
-// The parts of the page around the player.
-const replaceParts = (places) => {
-  document.querySelector("#poster")?.remove();
-  $("picture").insertAdjacentHTML("afterbegin", places.poster);
-  document.querySelector(".verdict")?.remove();
-  header.insertAdjacentHTML("beforeend", places.verdict);
-  document.querySelector(".lead").textContent = places.lead;
-  for (const section of document.querySelectorAll("#sheet > section:not(.live)")) section.remove();
-  $("sheet").insertAdjacentHTML("afterbegin", places.sheet);
-  document.querySelector("footer").textContent = places.made;
-};
 const haunt = () => {
   if (scenery && reference && ghosts) scenery.haunt(reference); else if (scenery) scenery.ghost = [];
   dirty = true;
