@@ -87,6 +87,7 @@ COMMANDS = (
     "verify",
     "bench",
     "export",
+    "schema",
 )
 
 

@@ -178,6 +178,21 @@ def known_unit(text: str, dimension: Dimension | None = None) -> Unit:
         raise UnitError(f'"{text}" is not a unit known here{hint}') from None
 
 
+def pattern(dimension: Dimension, signed: bool = True, zero: bool = True) -> str:
+    """A regular expression for quantities of that kind, as editors can check: every unit that is one name (of lengths, angles,
+    masses, times and plain numbers only these), all that looks like a product of units; no sign, no 0 unless allowed."""
+    prefixed = [mark + name for name in _PREFIXABLE for mark in ("", *_PREFIXES, "μ")]
+    names = [one for one in (*_PLAIN, *_ALIASES, *prefixed, "A/h") if one and _unit(one).powers in dimension.powers]
+    first, letters, marks = "A-DF-Za-df-zµμ°%", "A-Za-zµμ°%", "·⋅*./^() \u00a0\u202f⁰¹²³⁴-⁹⁻0-9−-"
+    product = f"(?:[{first}][{letters}]*[{marks}]|[(/])[{letters}{marks}]*"  # e3 belongs to the number
+    simple = dimension is NUMBER or all(sum(map(abs, powers)) == 1 and max(powers) == 1 for powers in dimension.powers)
+    units = "|".join([*map(re.escape, sorted(names, key=len, reverse=True)), *([] if simple else [product])])
+    digits = r"[0-9]+\.?[0-9]*|\.[0-9]+" if zero else r"[0-9]*[1-9][0-9]*\.?[0-9]*|[0-9]*\.[0-9]*[1-9][0-9]*"
+    sign = "[+−-]?" if signed else r"\+?"
+    space = "[\\s\u00a0\u202f]*"
+    return f"^{space}{sign}(?:{digits})(?:[eE][+−-]?[0-9]+)?{space}(?:{units}){'?' if dimension is NUMBER else ''}{space}$"
+
+
 def to(value: float, unit: str) -> float:
     """An SI value expressed in `unit`: to(0.00012, "mm") is 0.12."""
     return value / known_unit(unit).factor

@@ -13,6 +13,7 @@ from watchsim.designs import Maker
 from watchsim.scene.designed import designed
 from watchsim.scene.errors import SceneError
 from watchsim.scene.load import load
+from watchsim.scene.schema import FILE
 
 DRAWINGS = ["banking.dxf", "escape_wheel.dxf", "lever.dxf", "roller.dxf"]
 
@@ -24,7 +25,7 @@ def _files(folder):
 def test_writes_a_scene_whose_dimensions_can_be_changed(tmp_path, capsys):
     folder = tmp_path / "my_lever"
     assert main(["new", "swiss_lever", "--lock", "2°", "--draw", "13.5°", "--teeth", "20", "-o", str(folder)]) == 0
-    assert _files(folder) == ["scene.toml"]
+    assert _files(folder) == [FILE, "scene.toml"]
     scene = load(folder)
     assert scene.title == "Swiss lever, 28800 vph, 20 teeth"
     assert set(scene.source["design"]) == {"of", *(one.name for one in Maker(designed("swiss_lever")).dimensions)}
@@ -37,7 +38,7 @@ def test_writes_a_scene_whose_dimensions_can_be_changed(tmp_path, capsys):
 def test_drawings_are_written_where_they_are_requested(tmp_path, capsys):
     folder = tmp_path / "my_lever"
     assert main(["new", "swiss_lever", "--lock", "2°", "--drawings", "-o", str(folder)]) == 0
-    assert _files(folder) == [*DRAWINGS, "scene.toml"]
+    assert _files(folder) == [*DRAWINGS, FILE, "scene.toml"]
     assert "lock = 2° (default 1.5°)" in (folder / "scene.toml").read_text(encoding="utf-8")
     with pytest.raises(SceneError, match="watchsim new swiss_lever"):
         load(folder).set("design.lock", "1.5°")

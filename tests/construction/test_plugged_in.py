@@ -53,7 +53,7 @@ def test_it_is_listed_written_and_refused(installed, tmp_path, capsys):
     assert main(["new", "--list", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["designs"][-1]["title"] == "Simple pendulum"
     assert main(["new", "pendulum", "--bob", "12 mm", "--drawings", "-o", str(tmp_path / "mine")]) == 0
-    assert sorted(path.name for path in (tmp_path / "mine").iterdir()) == ["bob.dxf", "scene.toml"]
+    assert sorted(path.name for path in (tmp_path / "mine").iterdir()) == ["bob.dxf", "scene.schema.json", "scene.toml"]
     assert main(["new", "pendulum", "--bob", "90 mm", "--length", "80 mm", "-o", str(tmp_path / "other")]) == 2
     assert "design.bob" in capsys.readouterr().err
 

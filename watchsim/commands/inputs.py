@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -132,9 +132,19 @@ def unused_folder(folder: Path, force: bool) -> Path:
     return secured_folder(folder, "drawings and scene")
 
 
-def write_start(folder: Path, files: Mapping[str, bytes]) -> list[str]:
-    """Write a new scene with its drawings, whole or not at all; the names of all files."""
+def write_start(folder: Path, files: dict[str, bytes], design: str = "") -> list[str]:
+    """Write a new scene, of that `design`, with its drawings and the schema that editors check it by, whole or not at all.
+
+    The names of all files.
+    """
+    from watchsim.scene import schema
     from watchsim.storage.write import write_folder
+
+    header, text = schema.HEADER.encode(), files.pop("scene.toml")
+    files |= {
+        "scene.toml": text if text.startswith(header) else header + text,
+        schema.FILE: schema.schema_text(design).encode(),
+    }
 
     def fill(place: Path) -> None:
         for name, data in files.items():
@@ -157,7 +167,7 @@ def start_from_drawings(names: Sequence[str], output: str | None, as_json: bool,
         found = propose(paths)
     except NothingToPropose as error:
         raise InputError(f"{error}.") from error
-    names = write_start(folder, found.files)
+    names = write_start(folder, dict(found.files))
     if as_json:
         print_json({**as_mapping(found, folder), "files": names})
         return

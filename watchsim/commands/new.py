@@ -171,7 +171,7 @@ def _write(design: Design, given: dict[str, object], asked: dict[str, Any]) -> N
     faults = overlap_faults(scene)
     if faults:
         raise SceneError(faults)
-    names = write_start(folder, files)
+    names = write_start(folder, files, design.name)
     if asked["json"]:
         print_json({"folder": str(folder), "files": names, "dimensions": drawn.dimensions})
         return

@@ -83,6 +83,21 @@ def _put_whole(
         elements[int(steps[-1])] = value
 
 
+def paths_of(mapping: Mapping[str, Any]) -> dict[str, str | float]:
+    """Every dotted path of a scene's mapping that `--set` can change and that leads to one value, with that value."""
+    found: dict[str, str | float] = {}
+
+    def enter(path: str, value: object) -> None:
+        inside = value.items() if isinstance(value, Mapping) else enumerate(value) if isinstance(value, list) else ()
+        for step, one in inside:
+            enter(f"{path}.{step}" if path else str(step), one)
+        if isinstance(value, str | int | float):
+            found[path] = value
+
+    enter("", {name: value for name, value in mapping.items() if name not in ("lock", "tolerances", "expect")})
+    return found
+
+
 def _holder(mapping: dict[str, Any], path: tuple[str, ...], faults: Faults) -> tuple[dict[str, Any] | None, tuple[str, ...]]:
     """The table that holds the key, and the rest of the path from the key on.
 
