@@ -167,6 +167,15 @@ def test_springs_count_by_stiffness():
     assert scene.nominal == 4.0
 
 
+def test_where_a_moving_body_starts_is_no_quantity():
+    scene = ws.load(BENCH).set("bodies.banking.angle", "0°")
+    keys = {one.key for one in quantities(scene)}
+    moving = [body.name for body in scene.bodies if body.motion != "fixed"]
+    assert "bodies.banking.angle" in keys and len(moving) == 3
+    assert not {f"bodies.{name}.angle" for name in moving} & keys
+    assert {f"bodies.{name}.position.1" for name in moving} <= keys
+
+
 def test_bounds_are_kept():
     """Friction 0 has nothing below it: the difference looks upwards only."""
     scene = ws.load(BENCH).set("contacts.1.friction", 0.0)

@@ -161,6 +161,14 @@ FAULTS = [
     ('"torques.0.value" = { distribution = "file", file = "none.txt" }', "cannot be read"),
     ('"torques.0.value" = { limit = "±1 µN·m" }', 'Did you mean "limits"?'),
     ('"balance.BODY.offset" = { limits = "±1 µm", correlated = { "none" = 0.5 } }', "is no other tolerance"),
+    *(
+        (
+            f'"torques.0.value" = {{ limits = "±1 µN·m" }}\n'
+            f'"contacts.0.friction" = {{ limits = "±0.1", correlated = {{ "torques.0.value" = {number} }} }}',
+            "a coefficient lies between -1 and 1, without its ends",
+        )
+        for number in ("true", "1", "-1.0", '"0.5"')
+    ),
 ]
 
 
