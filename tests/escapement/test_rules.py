@@ -133,6 +133,7 @@ def test_views_and_words_of_the_sheet_stand_beside_each_other(width):
         and lines
         and all(0.0 <= box.x0 < box.x1 <= 1.0 and max(lines) < box.y0 < box.y1 <= 1.0 for box in boxes)
     )
+    assert all(min(box.width, box.height) > 0.1 for box in boxes)
     for one, other in combinations(boxes, 2):
         assert one.x1 <= other.x0 or other.x1 <= one.x0 or one.y1 <= other.y0 or other.y1 <= one.y0
         assert one.y1 > other.y0

@@ -155,7 +155,7 @@ def test_a_recording(tmp_path):
         ),
         ("t_s,angle_deg\n0,1\n2,1\n1,3\n", ["--vary", "springs.0.stiffness"], ["grow from row to row"]),
         (
-            "t_s,angle_deg,angle_deg_error\n0,1,0.1\n0.1,0.9,0\n0.2,0.8,\n",
+            "t_s,angle_deg,angle_deg_error\n0,1,0\n0.1,0.9,-1\n0.2,0.8,\n",
             ["--vary", KEYS[0]],
             ["standard errors must be above zero"],
         ),
