@@ -165,7 +165,7 @@ def test_a_spring_that_stiffens_with_the_angle_makes_the_rate_depend_on_the_swin
     plain, cycle = ws.steady(swiss), ws.steady(curved)
     swing = math.radians(cycle.amplitude_deg)
     assert cycle.rate_s_per_d - plain.rate_s_per_d == pytest.approx(86400 * 3 * share * swing**2 / 8, rel=2e-3)
-    assert abs(ws.simulate(curved, 2.0).energy["residual_relative"]) < 1e-9
+    assert abs(ws.simulate(curved, 2.0, 1e-11).energy["residual_relative"]) < 1e-9
 
 
 def test_a_balance_alone(bench):

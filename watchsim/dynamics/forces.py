@@ -225,16 +225,26 @@ def table_value(model, table, x):
 
 @kernel
 def driving_force(model, i, q):
-    """Constant force of coordinate i, plus gravity on an excentric rotor, torque m (r × g) with r turned by q, and the cubic
-    part of a spring."""
+    """Constant force of coordinate i, plus gravity on an excentric rotor: torque m (r × g) with r turned by q."""
     coordinate = model.coordinates[i]
     force = coordinate.force
     if coordinate.weight_x != 0.0 or coordinate.weight_y != 0.0:
         force += math.cos(q) * coordinate.weight_y - math.sin(q) * coordinate.weight_x
-    if coordinate.cubic != 0.0:
-        way = q - coordinate.rest
-        force -= coordinate.cubic * way * way * way
     return force
+
+
+@kernel
+def cubic_force(coordinate, q):
+    """The part of a spring's force that goes with the cube of the way from rest."""
+    way = q - coordinate.rest
+    return -coordinate.cubic * way * way * way
+
+
+@kernel
+def cubic_energy(coordinate, q):
+    """What that part stores, J."""
+    way = q - coordinate.rest
+    return 0.25 * coordinate.cubic * way * way * way * way
 
 
 damping_rate = kernel(resistance)
@@ -302,6 +312,8 @@ def forces(model, t, q, u, out_h):
         out_h[i] = (
             driving_force(model, i, q[i]) - coordinate.stiffness * (q[i] - coordinate.rest) + damping_force(model, i, u[i])
         )
+        if coordinate.cubic != 0.0:
+            out_h[i] += cubic_force(coordinate, q[i])
     for j in range(len(model.joints)):
         joint = model.joints[j]
         torque = joint_force(joint, q, u)
@@ -373,6 +385,8 @@ def stored_energy(model, q, u):
             continue
         way = q[i] - coordinate.rest
         energy += 0.5 * (coordinate.mass * u[i] * u[i] + coordinate.stiffness * way * way)
+        if coordinate.cubic != 0.0:
+            energy += cubic_energy(coordinate, q[i])
     return energy + joint_energy(model, q) + line_spring_energy(model, q)
 
 
