@@ -226,7 +226,7 @@ def test_no_drawing_of_our_own_brings_it_down(path: Path) -> None:
 
 
 BARE = {  # layers named after features alone, or not at all: parts by profile, each with its layers and its task
-    "cam": {("CAM",): "driver", ("END", "SHAFT"): "lever"},
+    "cam": {("CAM",): "driver", ("END", "SHAFT"): "click"},
     "geneva_stop": {("DISC", "PIN", "PLATE"): "driver", ("CROSS",): "wheel"},
     "duplex": {("IMPULSE", "RESTING"): "wheel", ("PALLET", "RIM", "ROLLER"): "oscillator"},
     "pin_wheel": {("PINS", "RIM"): "wheel", ("ANCHOR", "BOB", "PALLETS", "ROD"): "oscillator"},

@@ -91,7 +91,7 @@ def named_facings(roles: Sequence[Role]) -> list[Facing]:
 def _misses(one: Role, other: Role) -> bool:
     """What turns all the way passes what stands still; it would end there."""
     tasks = {one.task, other.task}
-    return FIXED in tasks <= {WHEEL, DRIVER, OSCILLATOR, FIXED} and "anchor" not in (one.name, other.name)
+    return FIXED in tasks <= {WHEEL, DRIVER, OSCILLATOR, FIXED} and not (one.little or other.little)
 
 
 def _facing(one: Role, a: str, other: Role, b: str, size: float) -> Facing | None:
@@ -110,19 +110,19 @@ def _overlap(p: Piece, q: Piece) -> float:
 
 
 def turns_fully(role: Role) -> bool:
-    return role.task in (WHEEL, DRIVER) or (role.task == OSCILLATOR and role.name != "anchor")
+    return role.task in (WHEEL, DRIVER) or (role.task == OSCILLATOR and not role.little)
 
 
 def _reach(one: Role, p: Piece, other: Role, q: Piece, near: float) -> bool:
     if turns_fully(one) and turns_fully(other):
-        (low, high), (lower, higher) = (_ring(piece.points, _at(role)) for piece, role in ((p, one), (q, other)))
+        (low, high), (lower, higher) = (ring(piece.points, _at(role)) for piece, role in ((p, one), (q, other)))
         apart = math.dist(_at(one), _at(other))
         return high + higher + near >= apart and apart + min(high, higher) + near >= max(low, lower)
     if turns_fully(other):
         one, p, other, q = other, q, one, p
     if turns_fully(one):
-        low, high = _ring(p.points, _at(one))
-        ranges = [_ring(points, _at(one)) for points in _swung(other, q)]
+        low, high = ring(p.points, _at(one))
+        ranges = [ring(points, _at(one)) for points in _swung(other, q)]
         return any(least <= high + near and most >= low - near for least, most in ranges)
     placed_p, placed_q = ([_region(piece, points) for points in _swung(role, piece)] for role, piece in ((one, p), (other, q)))
     return any(first.distance(second) <= near for first in placed_p for second in placed_q)
@@ -150,7 +150,7 @@ def _region(piece: Piece, points: Floats) -> Region:
     return united(part for ring in np.split(points, ends[:-1]) for part in material([(ring, False)]))
 
 
-def _ring(points: Floats, centre: Point) -> tuple[float, float]:
+def ring(points: Floats, centre: Point) -> tuple[float, float]:
     """The least and the largest distance of an outline from a point."""
     start, step = points[:-1] - np.array(centre), np.diff(points, axis=0)
     length = np.maximum((step**2).sum(axis=1), 1e-30)

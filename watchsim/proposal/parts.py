@@ -16,12 +16,14 @@ from numpy.typing import NDArray
 from watchsim.geometry.primitives import Point
 from watchsim.mechanism.overlap import placed
 from watchsim.proposal.pieces import (
+    CLICK,
     FIXED,
     LEVER,
     MANY,
     NONE,
     OSCILLATOR,
     SURE,
+    USUAL,
     WEAK,
     WHEEL,
     Centre,
@@ -81,8 +83,9 @@ def join(parts: list[Part], together: Callable[[Part, Part], bool], why: str) ->
 def unite(part: Part, other: Part, why: str) -> None:
     part.pieces += other.pieces
     part.centre = surest((part, other))
-    # An anchor with its pendulum, or a lever with its own balance, is the oscillator.
-    part.kind = OSCILLATOR if {part.kind, other.kind} == {LEVER, OSCILLATOR} else part.kind or other.kind
+    # An anchor with its pendulum, or a lever with its own balance, is the oscillator; an arm with a beak a click.
+    kinds = {part.kind, other.kind}
+    part.kind = OSCILLATOR if kinds == {LEVER, OSCILLATOR} else CLICK if kinds == {LEVER, CLICK} else part.kind or other.kind
     part.why = list(dict.fromkeys([*part.why, *other.why, why]))
 
 
@@ -377,10 +380,15 @@ def _away(part: Part, place: Point) -> float:
 
 
 def _own_centre(part: Part) -> Centre:
-    """The centre of a part that shows none: its hole, else its centre of area."""
+    """The centre of a part that shows none: its hole, the smallest circle drawn over its outlines, else its centre of area."""
     holes = [centre for piece in part.pieces if (centre := hole_of(piece)) is not None]
     if holes:
         return holes[0]
+    over = [disc for disc in part.pieces if disc.is_disc and any(holds(p, disc.centroid) for p in part.pieces if p is not disc)]
+    if over:
+        bore = min(over, key=lambda disc: disc.area)
+        radius = bore.length / (2.0 * math.pi)
+        return Centre(bore.centroid, USUAL, f"the centre of its smallest circle, of radius {1e3 * radius:.4g} mm, as of a bore")
     largest = max(part.pieces, key=lambda piece: piece.area)
     return Centre(largest.centroid, NONE, "the centre of area of its largest outline: nothing in the drawing shows a pivot")
 
@@ -417,11 +425,11 @@ def is_one_sided(part: Part, wheel: Part) -> bool:
 
 
 def nose_of(part: Part, wheel: Part) -> Nose:
-    """The place of the part nearest to the wheel's centre, as it is drawn."""
-    toothed = toothing(wheel)
-    assert part.centre is not None and toothed is not None
-    _, place = _closest(part, toothed.centre, 0.0)
-    closer = _closest(part, toothed.centre, STEP)[0] < _closest(part, toothed.centre, -STEP)[0]
+    """The place of the part nearest to the centre of a wheel or cam, as it is drawn."""
+    assert part.centre is not None and wheel.centre is not None
+    at = wheel.centre.at
+    _, place = _closest(part, at, 0.0)
+    closer = _closest(part, at, STEP)[0] < _closest(part, at, -STEP)[0]
     return Nose(1 if closer else -1, math.dist(part.centre.at, place))
 
 

@@ -199,7 +199,8 @@ PARTS = {
     **dict.fromkeys(("ratchet", "sperrrad", "sperrad", "rochet", "star", "stern", "étoile"), WHEEL),
     **dict.fromkeys(("lever", "anker", "anchor", "ancre", "detent"), LEVER),
     **dict.fromkeys(("click", "pawl", "jumper", "klinke", "sperrklinke", "sperrkegel", "raste", "cliquet", "sautoir"), CLICK),
-    **dict.fromkeys(("cam", "came", "nocken"), DRIVER),
+    **dict.fromkeys(("follower", "tappet", "fühler", "palpeur"), CLICK),
+    **dict.fromkeys(("cam", "came", "nocken", "kurvenscheibe", "snail", "schnecke", "limaçon"), DRIVER),
     **dict.fromkeys(("cross", "malteserkreuz", "croix"), WHEEL),
     **dict.fromkeys(("driver", "crank", "finger", "kurbel", "mitnehmer", "manivelle", "doigt"), DRIVER),
     **dict.fromkeys(("balance", "unruh", "balancier", "pendulum", "pendel", "pendule", "foliot"), OSCILLATOR),
@@ -211,11 +212,14 @@ FEATURES = {
     **dict.fromkeys(("escape", "teeth", "tooth", "zahn", "zaehne", "zähne", "dents"), WHEEL),
     **dict.fromkeys(("pallet", "pallets", "stone", "stones", "fork", "horn", "horns", "dart", "guard", "arm", "arms"), LEVER),
     **dict.fromkeys(("gabel", "stein", "steine", "fourchette", "palette", "palettes", "levée", "levees"), LEVER),
+    **dict.fromkeys(("beak", "nose", "bec", "nase"), CLICK),
     **dict.fromkeys(("roller", "table", "safety", "impulse", "jewel", "rim", "hebelstein", "bob", "rod"), OSCILLATOR),
 }
 TEETH = frozenset(("teeth", "tooth", "zahn", "zaehne", "zähne", "dents", "wheel", "gear", "pinion", "rad", "ratchet", "star"))
 STONES = frozenset(("pallet", "pallets", "stone", "stones", "stein", "steine", "palette", "palettes", "teeth"))
 CLICKS = frozenset(("click", "pawl", "jumper", "nose", "beak", "klinke", "sperrklinke", "cliquet", "sautoir", "bec"))
+CAMS = frozenset(("cam", "came", "nocken", "kurvenscheibe", "snail", "schnecke", "limaçon"))
+ANCHORS = frozenset(("anchor", "anker", "ancre", "pendulum", "pendel", "pendule", "rod", "bob"))  # what swings a little only
 FORK = frozenset(("fork", "horn", "horns", "gabel", "fourchette"))
 PIN = frozenset(("pin", "jewel", "impulse", "hebelstein"))
 GUARD = frozenset(("dart", "guard"))

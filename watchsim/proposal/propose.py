@@ -133,7 +133,8 @@ def _body(plan: Plan, role: Role) -> Iterator[str]:
         yield plan.guess(f"{key}.angle", _text(f"{math.degrees(angle):.6g}°"), plan.start.why.get(role.name, "as needed"))
     if plan.amounts.turned == role.name:
         yield 'motion = "driven"'
-        why = f"it turns {'clockwise' if plan.direction < 0 else 'counter-clockwise'}, evenly, and moves the wheel on"
+        moved = "the wheel on" if first_of(plan.roles, WHEEL) is not None else "what follows it"
+        why = f"it turns {'clockwise' if plan.direction < 0 else 'counter-clockwise'}, evenly, and moves {moved}"
         yield plan.guess(f"{key}.velocity", _text(f"{60 * plan.direction} rpm"), why)
         return
     inertia = plan.amounts.inertia[role.name]

@@ -16,7 +16,21 @@ from numpy.typing import NDArray
 
 from watchsim.geometry.primitives import Point
 from watchsim.proposal.parts import Part, is_one_sided, teeth_of
-from watchsim.proposal.pieces import CLICK, DRIVER, FIXED, LEVER, OSCILLATOR, WHEEL, Floats, is_toothed, part_of, part_word
+from watchsim.proposal.pieces import (
+    ANCHORS,
+    CAMS,
+    CLICK,
+    DRIVER,
+    FIXED,
+    LEVER,
+    OSCILLATOR,
+    WHEEL,
+    Floats,
+    is_toothed,
+    part_of,
+    part_word,
+    tokens,
+)
 
 APART = "#"  # between the name of a layer and the number of an outline on it
 
@@ -96,13 +110,17 @@ NAMES = {WHEEL: "wheel", LEVER: "lever", OSCILLATOR: "balance", CLICK: "click", 
 
 @dataclass(eq=False)
 class Role:
-    """A part with its name and task: wheel, lever, oscillator, click, driver or fixed. `teeth` is 0 where it is no wheel."""
+    """A part with its name and task: wheel, lever, oscillator, click, driver or fixed. `teeth` is 0 where it is no wheel.
+
+    `little`: an oscillator that swings between the teeth, as an anchor or a pendulum does, not all round like a balance.
+    """
 
     part: Part
     name: str
     task: str
     why: str
     teeth: int = 0
+    little: bool = False
 
     @property
     def moves(self) -> bool:
@@ -138,9 +156,12 @@ def roles_of(parts: Sequence[Part]) -> list[Role]:
         elif driven is not None and part is driven[0]:
             found.append(Role(part, "", *driven[1:]))
         else:
-            named = part.kind == LEVER
+            named = part.kind == LEVER and (swinging is not None or any(part_word(layer) for layer in part.layers))
             task = LEVER if named or swinging is not None else DRIVER
             found.append(Role(part, "", task, BY_NAME if named else "it turns and is no wheel"))
+    levers = any(role.task == LEVER for role in found)
+    for role in found:
+        role.little = role.task == OSCILLATOR and bool(wheels) and not levers and _is_anchor(role.part)
     order = [DRIVER, WHEEL, LEVER, OSCILLATOR, CLICK, FIXED]
     found.sort(key=lambda role: order.index(role.task))
     _name(found)
@@ -177,11 +198,25 @@ def _oscillator(rest: Sequence[Part], wheels: Sequence[Part]) -> tuple[Part, str
     return farthest, "it is the farthest from the wheel"
 
 
+def _is_anchor(part: Part) -> bool:
+    """Does it swing between teeth? By its names, else by its form: what turns all round is round."""
+    return bool(_words(part) & ANCHORS) or (part.kind != OSCILLATOR and _roundness(part) < ROUNDISH)
+
+
+def _words(part: Part) -> set[str]:
+    return {word for layer in part.layers for word in tokens(layer)}
+
+
 def _driven(rest: Sequence[Part]) -> tuple[Part, str, str] | None:
-    """Of two parts of which one drives, by its name or by a pin away from its pivot: the other, its task, and why."""
+    """Of two parts of which one drives, by its name or by a pin away from its pivot: the other, its task, and why.
+
+    What a cam moves is pressed on it.
+    """
     if len(rest) != 2:
         return None
     for one, other in (rest, rest[::-1]):
+        if _words(one) & CAMS and other.kind is None:
+            return other, CLICK, "it follows the cam, as the names of the other's layers say"
         if one.kind == DRIVER and other.kind is None:
             return other, LEVER, "the names of the other's layers say that it drives"
         if _has_pin(one) and not _has_pin(other) and other.kind in (None, WHEEL):
@@ -209,7 +244,7 @@ def _name(roles: Sequence[Role]) -> None:
         words = [word for word, kind in named if word is not None and role.task in (kind, DRIVER) and kind != FIXED]
         words = words or [word for word, _ in named if word is not None and role.task == FIXED]
         plain = words[0] if words else NAMES[role.task]
-        if role.task == OSCILLATOR and not words and not any(other.task == LEVER for other in roles):
+        if role.little and not words:
             plain = "anchor"
         name, k = plain, 1
         while name in taken:

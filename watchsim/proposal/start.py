@@ -18,7 +18,7 @@ import numpy as np
 from watchsim.drawing.write import dxf_text
 from watchsim.geometry.primitives import Point
 from watchsim.geometry.solids import section
-from watchsim.proposal.facing import Facing, clearance, turns_fully
+from watchsim.proposal.facing import Facing, clearance, ring, turns_fully
 from watchsim.proposal.parts import Part, nose_of, toothing
 from watchsim.proposal.pieces import CLICK, DRIVER, LEVER, OSCILLATOR, WHEEL, Piece, Source, tokens
 from watchsim.proposal.roles import Role, first_of, plain
@@ -99,17 +99,20 @@ def amounts_of(roles: Sequence[Role], size: float, swing: float) -> Amounts:
 
 
 def _clicks(roles: Sequence[Role], wheel: Role | None, torque: float) -> tuple[ClickSpring, ...]:
-    """Springs so strong that lifting the click over a tooth takes a share of the drive's work."""
+    """Springs so strong that lifting the click over a tooth, or over the cam, takes a share of the drive's work."""
     found = []
+    under = wheel or first_of(roles, DRIVER)
     for role in roles:
-        teeth = toothing(wheel.part) if wheel is not None else None
-        if role.task != CLICK or wheel is None or teeth is None:
+        if role.task != CLICK or under is None or under.part.centre is None:
             continue
-        nose = nose_of(role.part, wheel.part)
-        lift = (teeth.outer - teeth.inner) / nose.arm  # rad, about
+        teeth, nose = toothing(under.part), nose_of(role.part, under.part)
+        outline = max(under.part.pieces, key=lambda piece: piece.area).points
+        low, high = ring(outline, under.part.centre.at) if teeth is None else (teeth.inner, teeth.outer)
+        lift = (high - low) / nose.arm  # rad, about
         bent = max(BENT, 2.0 * lift)
-        moment = LIFTING * torque * 2.0 * math.pi / teeth.fold / lift
-        why = f"lifting it over a tooth takes about {LIFTING:.0%} of the drive's work"
+        moment = LIFTING * torque * 2.0 * math.pi / (teeth.fold if teeth is not None else 1) / lift
+        over = "a tooth" if teeth is not None else under.name
+        why = f"lifting it over {over} takes about {LIFTING:.0%} of the drive's work"
         found.append(ClickSpring(role.name, Amount(moment / bent, why), nose.inward * bent))
     return tuple(found)
 
