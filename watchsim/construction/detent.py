@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from watchsim.construction import scene_builder as toml
 from watchsim.construction.design import CHOSEN, ESTIMATE, Conflict, Design, Impossible, dim, sheets_of
 from watchsim.construction.outline import along, angle_of, circle, cosine, polar, polygon, sine, to_circle, turned
-from watchsim.construction.parts import Arms, Stone, ToothForm, contour, too_little_draw
+from watchsim.construction.parts import Arms, BalanceWheel, Stone, ToothForm, balance_wheel, contour, too_little_draw
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Point
@@ -135,7 +135,8 @@ class Points:
 
 # What are the outlines of a detent escapement's parts? Millimetres, each in its own frame.
 
-ARMS, ARM_WIDTH, RIM, HUB, BORE, WINDOW_FILLET = 4, 0.34, 4.2, 1.1, 0.35, 0.25
+ARMS, BALANCE_ARMS = 4, 2
+ARM_WIDTH, RIM, HUB, BORE, WINDOW_FILLET = 0.34, 4.2, 1.1, 0.35, 0.25
 TABLE, STAFF = 0.86, 0.45  # of the impulse stone's reach; mm
 STONE_WIDTH, STONE_LENGTH, EDGE = 0.42, 1.1, 0.05  # of the impulse stone
 RELIEF = 25.0  # degrees: the end of the impulse stone behind its tip, from the circle it runs on
@@ -174,7 +175,13 @@ def roller(points: Points) -> list[Loop]:
         circle("ROLLER", (0.0, 0.0), points.pin_centre - 0.2 * values.discharge_radius),  # the stone stands out of it
         circle("ROLLER", (0.0, 0.0), STAFF * s, hole=True),
         circle("DISCHARGE", pin, values.discharge_radius),
+        *wheel_of(points).rim(),
     ]
+
+
+def wheel_of(points: Points) -> BalanceWheel:
+    """Rim and hairspring of the balance."""
+    return balance_wheel(points.values.balance_inertia, points.stone_reach, STAFF * points.scale, BALANCE_ARMS)
 
 
 def _beside(points: Points, x: float, y: float) -> Point:
@@ -270,12 +277,13 @@ def scene_text(values: Detent) -> str:
         ),
         toml.body(
             *("balance", "roller", "TABLE IMPULSE_STONE ROLLER DISCHARGE", "hangs at the end of a swing"),
+            draw="RIM",
             position=toml.at(*points.balance_pivot),
             angle=f"{-values.start!r}°",
             inertia=f"{values.balance_inertia:.15g} mg·cm²",
         ),
         toml.banking("SCREW"),
-        toml.hairspring(values.frequency),
+        toml.hairspring(values.frequency, wheel_of(points).hairspring(90.0)),
         toml.table(
             *("[[springs]]", "bent: holds the detent on its bank"),
             body="detent",

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
 from watchsim.construction import scene_builder as toml
 from watchsim.construction.design import Design, dim, sheets_of
-from watchsim.construction.outline import rounded
+from watchsim.construction.outline import circle
+from watchsim.construction.parts import Arms
 from watchsim.construction.swiss_lever import ESTIMATE, SwissLever, conflicts, parts, rest, swiss
 from watchsim.construction.swiss_lever import draw as draw_lever
 from watchsim.drawing.write import Sheet
@@ -59,7 +61,7 @@ def scene_text(values: Tourbillon) -> str:
             gravity=values.gravity,
         ),
         toml.body(
-            *("carriage", "carriage", "BRIDGE", "a bridge, only drawn: nothing is declared to touch it"),
+            *("carriage", "carriage", "CAGE", "only drawn: nothing is declared to touch it"),
             pivot=toml.ORIGIN,
             width=14,
             mass=f"{values.carriage_mass:.15g} mg",
@@ -79,18 +81,17 @@ def scene_text(values: Tourbillon) -> str:
     )
 
 
-# Shares of the distance from wheel to balance, with each corner's radius: a foot under the wheel, two arms over the balance.
-BRIDGE = (
-    *((-0.23, -1.2, 0.1), (0.0, -1.34, 0.3), (0.23, -1.2, 0.1), (0.12, 0.0, 0.15), (0.38, 0.55, 0.05), (0.28, 0.71, 0.05)),
-    *((0.0, 0.22, 0.08), (-0.28, 0.71, 0.05), (-0.38, 0.55, 0.05), (-0.12, 0.0, 0.15)),
-)
+# Shares of the distance from wheel to balance: a ring that holds wheel, lever and balance, three arms, the bearing of the
+# balance; width of an arm, and corners of the openings.
+RING, INNER, ARMS, HUB, WIDTH, CORNER = 1.52, 1.43, 3, 0.13, 0.09, 0.06
 
 
 def draw(values: Tourbillon) -> dict[str, Sheet]:
-    """The sheets of the lever, and the carriage about the balance's axis."""
+    """The sheets of the lever, and the carriage about the balance's axis: its upper half, with one arm away from the wheel."""
     scale = swiss(values).balance_pivot[1]
-    bridge = rounded("BRIDGE", [((scale * x, scale * y), scale * radius) for x, y, radius in BRIDGE])
-    return draw_lever(values) | sheets_of(carriage=[bridge])
+    openings = Arms(ARMS, WIDTH * scale, HUB * scale, INNER * scale, CORNER * scale).windows("CAGE")
+    cage = [circle("CAGE", (0.0, 0.0), RING * scale), *(loop.moved(math.pi / 2.0, (0.0, 0.0)) for loop in openings)]
+    return draw_lever(values) | sheets_of(carriage=cage)
 
 
 DESIGN = Design("tourbillon", "Swiss lever on the carriage of a tourbillon", Tourbillon, draw, scene_text, conflicts)

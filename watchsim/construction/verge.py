@@ -83,7 +83,7 @@ STAFF = 0.45  # radius of the verge's staff, in depths
 THICK, THINNEST = 0.16, 0.08  # of a flag, in depths and in pitches, the smaller of the two
 RIM = 1.5  # of the crown wheel below its teeth, in their heights
 ARM = 200.0  # mm: reach of a foliot of 16 kg·cm²; one of another inertia is of the same shape
-BAR, WEIGHT_WIDE, WEIGHT_HIGH = 0.012, 0.10, 0.20  # of its reach
+BAR, WEIGHT_WIDE, WEIGHT_HIGH = 0.0025, 0.10, 0.20  # of its reach
 
 
 def near_side(values: Verge) -> list[Loop]:

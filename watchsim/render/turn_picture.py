@@ -21,9 +21,8 @@ from watchsim.render.palette import BACKGROUND, CONTACT, FAINT, GRID, INK, LIGHT
 from watchsim.render.parts import Part, pose_matrix, working
 from watchsim.storage.write import write_file
 
-VIEWS, ACROSS = 8, 4
-SIZE, DPI = (16.0, 12.0), 110
-MARGINS = {"left": 0.06, "right": 0.94, "bottom": 0.07, "top": 0.9, "hspace": 0.24, "wspace": 0.06}
+VIEWS, ACROSS = 9, 3
+WIDE, VIEW, PLOT, HEAD, FOOT, DPI = 10.0, 3.0, 3.2, 1.25, 0.6, 150  # inches: letters are read where a page shows it 700 px wide
 ROOM = 1.15  # of the reach of what touches: half the side of a view
 BEFORE_AFTER = 12.0  # degrees of the led body that the plot shows beyond the first and last happening
 MOMENTS = ("free", "back", "leaves", "meets")  # in this order of importance
@@ -38,20 +37,23 @@ def turn_picture(found: Turn, path: Path, on_dark: bool = False) -> None:
 def _figure(found: Turn) -> Figure:
     story = happenings(found)
     chosen = _moments(found, story)
-    figure = Figure(figsize=SIZE, facecolor=BACKGROUND)
-    FigureCanvasAgg(figure)
     rows = max(1, math.ceil(len(chosen) / ACROSS))
-    grid = figure.add_gridspec(rows + 1, ACROSS, height_ratios=[*([1.0] * rows), 1.1], **MARGINS)
+    tall = HEAD + rows * VIEW + PLOT + FOOT
+    figure = Figure(figsize=(WIDE, tall), facecolor=BACKGROUND)
+    FigureCanvasAgg(figure)
+    margins = {"left": 0.07, "right": 0.93, "bottom": FOOT / tall, "top": 1.0 - HEAD / tall, "hspace": 0.3, "wspace": 0.06}
+    grid = figure.add_gridspec(rows + 1, ACROSS, height_ratios=[*([VIEW] * rows), PLOT], **margins)
     shapes = working(found.scene, 2e-7, 2e-4)
     box = _box(found)
     for number, (row, words) in enumerate(chosen):
         axes = figure.add_subplot(grid[number // ACROSS, number % ACROSS])
         _view(axes, found, row, shapes, box)
-        axes.set_title(f"{number + 1}   {words}", fontsize=9.5, color=INK, loc="left")
+        heading = words.replace(": ", ":\n")
+        axes.set_title(f"{number + 1}   {heading}", fontsize=9.5, color=INK, loc="left")
     plot = figure.add_subplot(grid[rows, :])
     _plot(plot, found, story, [row for row, _ in chosen])
-    figure.text(0.06, 0.965, found.scene.title, fontsize=15, fontweight="bold", color=INK)
-    figure.text(0.06, 0.94, f"turned by hand, no forces: {verdict(found)[1]}", fontsize=11, color=INK)
+    figure.text(0.07, 1.0 - 0.3 / tall, found.scene.title, fontsize=14, fontweight="bold", color=INK)
+    figure.text(0.07, 1.0 - 0.53 / tall, f"turned by hand, no forces: {verdict(found)[1]}", fontsize=11, color=INK)
     return figure
 
 
