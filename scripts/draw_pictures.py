@@ -1,240 +1,45 @@
 """The pictures of the pages, and the pages that hold little else.
 
-    python scripts/draw_pictures.py kinds|laws|beat|mechanisms|movies|gallery|plots|tolerances|positions|shrink [profile]
+    python scripts/draw_pictures.py all            every picture
+    python scripts/draw_pictures.py graham.png     one, by its path in docs/images, or those of a group
 
-kinds: the kinds of contact (docs/theory/contact-geometry.md); laws: the laws of contact, the expansion read off the solver
-itself; beat: angles and velocities of the Swiss lever; mechanisms, movies: those of docs/guide/mechanisms.md, of one profile
-or all; gallery, plots: docs/guide/gallery.md and plots.md, from the commands that they show;
-tolerances: the studies of docs/guide/tolerances.md; positions: the dials of docs/guide/positions.md. shrink goes last.
+Groups: theory; mechanisms and movies (docs/guide/mechanisms.md); pages (single pictures of other pages); gallery and plots, from
+the commands that docs/guide/gallery.md and plots.md show; tolerances (256 watches each, some minutes). Beside the pictures
+stand their words (docs/images/words.json), which tests compare with those of today. Pictures of measurements are drawn by the
+scripts that measure (`MEASURED`).
 """
 
 from __future__ import annotations
 
-import math
+import contextlib
+import io
+import json
 import os
+import re
 import shlex
 import shutil
-import subprocess
-import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 import imageio.v3 as imageio
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.patches import PathPatch
-from matplotlib.path import Path as Curve
+from draw_theory import PICTURES as THEORY
+from matplotlib.figure import Figure
+from matplotlib.text import Text
 from PIL import Image
 
 import watchsim as ws
-from watchsim.geometry.loops import Loop, polyline
-from watchsim.geometry.primitives import Arc, Line, Point
-from watchsim.render.palette import BRASS, FAINT, INK, STEEL
-from watchsim.render.style import HAIR, LABEL, SERIES, SMALL, TICK, figure, save
-from watchsim.render.style import title as named
-from watchsim.verification.random_problems import BareContacts
+from watchsim.cli import main as watchsim
 
 ROOT = Path(__file__).resolve().parents[1]
 IMAGES = ROOT / "docs" / "images"
+WORDS = IMAGES / "words.json"
 
-KINDS = IMAGES / "contact_kinds.png"
-A_FILL, B_FILL = BRASS.fill, STEEL.fill
-TANGENT, NORMAL, GAP, *_ = SERIES
-STILL = (0.0, 0.0, 0.0)
-FINE = 1e-3
-
-
-def polygon(*points: Point) -> Loop:
-    """Counter-clockwise corners."""
-    return Loop(tuple(Line(*p, *q) for p, q in zip(points, points[1:] + points[:1], strict=True)))
-
-
-def disc(radius: float) -> Loop:
-    return Loop((Arc(0.0, 0.0, radius, 0.0, math.tau),))
-
-
-TOOTH = polygon((0.0, 0.0), (0.5, 1.2), (-0.45, 1.2))
-GROUND = polygon((-1.6, -0.5), (1.6, -0.5), (1.6, 0.0), (-1.6, 0.0))
-NOSE = Loop(
-    (
-        Arc(0.0, -1.2, 1.2, math.pi / 4, math.pi / 2),
-        Line(-0.8485, -0.3515, -0.8485, -0.7),
-        Line(-0.8485, -0.7, 0.8485, -0.7),
-        Line(0.8485, -0.7, 0.8485, -0.3515),
-    )
-)
-BOWL = Loop(
-    (
-        Line(-1.5, 0.6, -1.5, -0.5),
-        Line(-1.5, -0.5, 1.5, -0.5),
-        Line(1.5, -0.5, 1.5, 0.6),
-        Line(1.5, 0.6, 1.2, 0.6),
-        Arc(0.0, 0.95, 1.25, -0.2838, -2.574),
-        Line(-1.2, 0.6, -1.5, 0.6),
-    )
-)
-PANELS = (
-    ("corner on line", TOOTH, (0.2, 0.35, 0.15), GROUND),
-    ("convex arc on line", disc(0.5), (0.1, 0.82, 0.0), GROUND),
-    ("corner on convex arc", TOOTH, (0.3, 0.28, -0.1), NOSE),
-    ("corner on concave arc", TOOTH, (0.3, 0.08, -0.1), BOWL),
-    ("convex arc on convex arc", disc(0.45), (0.35, 0.7, 0.0), NOSE),
-    ("convex arc in concave arc", disc(0.8), (0.18, 0.72, 0.0), BOWL),
-)
-
-
-def fill(ax: Axes, loop: Loop, pose: tuple[float, float, float], colour: str) -> None:
-    points = polyline(loop.moved(pose[2], pose[:2]), FINE)
-    ax.add_patch(PathPatch(Curve(points), facecolor=colour, edgecolor=INK, linewidth=0.7, joinstyle="round"))
-
-
-def arrow(ax: Axes, start: np.ndarray, way: np.ndarray, colour: str, word: str) -> None:
-    look = {"arrowstyle": "-|>", "color": colour, "linewidth": 1.2, "mutation_scale": 7.0, "shrinkA": 0, "shrinkB": 0}
-    ax.annotate("", tuple(start + way), tuple(start), arrowprops=look)
-    ax.annotate(word, tuple(start + 1.16 * way), color=colour, ha="center", va="center", fontsize=LABEL)
-
-
-def panel(ax: Axes, title: str, a: Loop, pose: tuple[float, float, float], b: Loop) -> None:
-    """One kind of pair: the contact with the smallest gap inside both primitives."""
-    rows = ws.gap(a, pose, b, STILL)
-    rows = rows[(rows["margin"] >= 0.0) & (rows["g"] > 0.0)]
-    row = rows[np.argmin(rows["g"])]
-    fill(ax, b, STILL, B_FILL)
-    fill(ax, a, pose, A_FILL)
-    point, n = row["point"], row["n"]
-    foot = point - row["g"] * n
-    ax.plot(*np.array([point, foot]).T, color=GAP, linewidth=1.6, solid_capstyle="round")
-    t = np.array([-n[1], n[0]])
-    ax.annotate("g", 0.5 * (point + foot) - 0.14 * t, color=GAP, ha="center", va="center", fontsize=LABEL)
-    ax.plot(*foot, "o", color=GAP, markersize=2.5)
-    arrow(ax, point, 0.55 * n, NORMAL, "n")
-    arrow(ax, point, 0.55 * t, TANGENT, "t")
-    ax.plot(*point, "o", color=INK, markersize=3)
-    named(ax, title)
-    words = f"{row['kind_a']}–{row['kind_b']}, g = {row['g']:.3f}"
-    ax.text(0.0, 0.99, words, transform=ax.transAxes, fontsize=SMALL, va="top", color=INK)
-    ax.set_aspect("equal")
-    ax.set_xlim(-1.65, 1.65)
-    ax.set_ylim(-0.75, 1.95)
-    ax.axis("off")
-
-
-def contact_kinds() -> None:
-    made = figure(height=100.0, layout="constrained")
-    axes = made.subplots(2, 3)
-    for ax, (title, a, pose, b) in zip(axes.ravel(), PANELS, strict=True):
-        panel(ax, title, a, pose, b)
-    KINDS.parent.mkdir(parents=True, exist_ok=True)
-    save(made, KINDS)
-
-
-GREY = FAINT
-LAW_COLOURS = dict(zip(("coulomb", "pg1996", "shifted"), SERIES, strict=False))
-DASHES = {"coulomb": "-", "pg1996": "--", "shifted": (0, (1.2, 1.0))}
-WIDE = 1.4  # pt, of a characteristic
-MU, EPS, BACK = 0.3, 0.8, 0.6
-
-
-def one_contact(law: str, eps: float, u: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:
-    """Total impulses N, T and rates after the impact; unit mass, no coupling, G = diag(1, 3) as for a uniform disc."""
-    contact = BareContacts(np.array([1.0, 1.0 / 3.0]), np.eye(2), np.array([MU]), np.array([eps]), law, tangential=BACK)
-    solved, after, impulses = contact.impact(np.array(u))
-    if not solved:
-        raise SystemExit(f"{law}: the impact at {u} was not solved")
-    return impulses, after
-
-
-def axes_through_zero(ax: Axes, x: str, y: str) -> None:
-    for side in ("top", "right"):
-        ax.spines[side].set_visible(False)
-    ax.spines[["left", "bottom"]].set_position("zero")
-    ax.spines[["left", "bottom"]].set_color(GREY)
-    ax.spines[["left", "bottom"]].set_linewidth(HAIR)
-    for side in ("left", "bottom"):
-        ax.spines[side].set_zorder(1)
-    ax.tick_params(colors=GREY, labelsize=TICK, length=2.0, width=HAIR)
-    ax.set_xlabel(x, loc="right", color=INK, fontsize=LABEL)
-    ax.annotate(y, (0.0, 1.0), (6, 0), ax.get_xaxis_transform(), "offset points", va="top", color=INK, fontsize=LABEL)
-
-
-def draw_expansion() -> None:
-    """Left: friction impulse of the expansion over the slip after it. Right: slip after over slip before the impact."""
-    made = figure(height=68.0, layout="constrained")
-    left, right = made.subplots(1, 2)
-    slips = np.linspace(-2.5, 2.5, 2001)
-    for law, colour in LAW_COLOURS.items():
-        impulses, after = [], []
-        for slip in slips:
-            compression, _ = one_contact(law, 0.0, (-1.0, slip))
-            total, rates = one_contact(law, EPS, (-1.0, slip))
-            impulses.append((total - compression)[1])
-            after.append(rates[1])
-        right.plot(slips, after, color=colour, label=law, lw=WIDE, ls=DASHES[law])
-        left.plot(slips, impulses, color=colour, label=law, lw=WIDE, ls=DASHES[law])
-    left.axhline(MU * EPS, color=GREY, lw=HAIR, ls="--")
-    left.axhline(-MU * EPS, color=GREY, lw=HAIR, ls="--")
-    left.text(2.45, MU * EPS + 0.012, r"$+\mu\,\Lambda_{NE}$", ha="right", color=GREY, fontsize=LABEL)
-    left.text(-2.45, -MU * EPS - 0.03, r"$-\mu\,\Lambda_{NE}$", color=GREY, fontsize=LABEL)
-    left.set(ylim=(-0.3, 0.32), yticks=[-0.2, -0.1, 0.1, 0.2], xticks=[-2, -1, 1, 2])
-    right.set(ylim=(-1.0, 1.1), yticks=[-0.8, -0.4, 0.4, 0.8], xticks=[-2, -1, 1, 2])
-    axes_through_zero(left, r"slip before  $\dot g_{TA}$", r"$\Lambda_{TE}$")
-    axes_through_zero(right, r"slip before  $\dot g_{TA}$", r"slip after  $\dot g_{TE}$")
-    named(left, "Friction impulse of the expansion")
-    named(right, "What becomes of the slip")
-    right.legend(frameon=False, loc="upper left", fontsize=SMALL)
-    save(made, IMAGES / "law_expansion.png")
-
-
-def draw_intervals() -> None:
-    """The set-valued characteristic of the expansion for each law, after a compression that pulled with half its cone."""
-    made = figure(height=56.0, layout="constrained")
-    panels = made.subplots(1, 3, sharey=True)
-    pulled = 0.5 * MU  # Lambda_TC for Lambda_NC = 1
-    share = min(BACK, EPS)
-    ends = {
-        "coulomb": (-MU * EPS, MU * EPS),
-        "pg1996": (EPS * BACK * pulled, MU * EPS),
-        "shifted": (share * pulled - MU * (EPS - share), share * pulled + MU * (EPS - share)),
-    }
-    for ax, (law, (low, high)) in zip(panels, ends.items(), strict=True):
-        ax.plot([-1.0, 0.0, 0.0, 1.0], [high, high, low, low], color=LAW_COLOURS[law], lw=1.6, zorder=3)
-        for x, y, side in ((-1.0, high, "left"), (1.0, low, "right")):
-            text = f"{y:+.3f}".replace("-", "\N{MINUS SIGN}")
-            ax.annotate(text, (x, y), (0, 4), textcoords="offset points", fontsize=SMALL, ha=side, color=INK)
-        ax.set(ylim=(-0.3, 0.3), xlim=(-1.1, 1.1), xticks=[], yticks=[-0.2, -0.1, 0.1, 0.2])
-        axes_through_zero(ax, r"$\dot g_{TE}$", r"$\Lambda_{TE}$")
-        named(ax, law)
-    save(made, IMAGES / "law_intervals.png")
-
-
-def draw_definitions() -> None:
-    """Unilateral contact, Coulomb friction and a dry bearing."""
-    made = figure(height=54.0, layout="constrained")
-    normal, friction, bearing = made.subplots(1, 3)
-    normal.plot([0.0, 0.0, 1.0], [1.0, 0.0, 0.0], color=INK, lw=1.6, zorder=3)
-    axes_through_zero(normal, r"$\ddot g_N$ or $\dot g_N$", r"$\lambda_N$")
-    named(normal, "normal: never pulls, never penetrates")
-    friction.plot([-1.0, 0.0, 0.0, 1.0], [0.6, 0.6, -0.6, -0.6], color=INK, lw=1.6, zorder=3)
-    axes_through_zero(friction, r"$\dot g_T$", r"$\lambda_T$")
-    friction.text(-0.95, 0.66, r"$\mu\lambda_N$", color=INK, fontsize=LABEL)
-    named(friction, "friction: grows with the normal force")
-    bearing.plot([-1.0, 0.0, 0.0, 1.0], [0.6, 0.6, -0.6, -0.6], color=INK, lw=1.6, zorder=3)
-    axes_through_zero(bearing, r"$\dot q$", "torque")
-    bearing.text(-0.95, 0.66, r"$T$", color=INK, fontsize=LABEL)
-    named(bearing, "dry bearing: a fixed bound")
-    for ax in (normal, friction, bearing):
-        ax.set(xticks=[], yticks=[], ylim=(-1.1, 1.1), xlim=(-1.1, 1.1))
-    save(made, IMAGES / "law_definitions.png")
-
-
-def laws() -> None:
-    IMAGES.mkdir(parents=True, exist_ok=True)
-    draw_definitions()
-    draw_intervals()
-    draw_expansion()
-
+Make = Callable[[Path], None]  # writes a picture to a path
 
 SIZE = (960, 540)
 SHOWN = {  # profile: simulated (s), instant (s), bodies to show close (None: all)
@@ -256,38 +61,19 @@ SHOWN = {  # profile: simulated (s), instant (s), bodies to show close (None: al
     "winding_click": (0.5, 0.2, None),
     "snail": (3.4, 3.3, None),
     "grasshopper": (1.5, 1.35, ["wheel", "entry", "exit"]),
-    "remontoir": (1.0, 0.942, ["stop_wheel", "stop_lever", "wheel"]),
+    "remontoir": (1.0, 0.942, None),
     "tourbillon": (5.1, 5.0, None),
     "governor": (1.1, 1.0, None),
 }
 
 
-def mechanisms(names: list[str]) -> None:
-    for name in names or SHOWN:
-        duration, instant, close = SHOWN[name]
-        run = ws.simulate(ws.load(ws.profiles_dir() / name / "scene.toml"), duration=duration)
-        imageio.imwrite(IMAGES / f"{name}.png", ws.frame(run, instant, size=SIZE, zoom=close))
+def mechanism(name: str, path: Path) -> None:
+    duration, instant, close = SHOWN[name]
+    run = ws.simulate(ws.load(ws.profiles_dir() / name), duration=duration)
+    imageio.imwrite(path, ws.frame(run, instant, size=SIZE, zoom=close))
 
 
-DURATION = 1.0  # s
-BEATS = 0.2  # s to each side of the instant in the plot
-
-
-def middle_of_an_impulse(run: ws.Trajectory) -> float:
-    """Time of the passage through rest that is nearest to the middle of the run."""
-    times = run.events["t"][run.events["kind"] == ws.EventKind.CROSS]
-    return float(times[np.argmin(np.abs(times - 0.5 * run.simulated))])
-
-
-def beat() -> None:
-    run = ws.simulate(ws.load(ROOT / "profiles" / "swiss_lever" / "scene.toml"), duration=DURATION)
-    t = middle_of_an_impulse(run)
-    IMAGES.mkdir(parents=True, exist_ok=True)
-    ws.plot_kinematics(run, window=(t - BEATS, t + BEATS)).savefig(IMAGES / "swiss_lever_beat.png")
-
-
-FILMS = IMAGES / "movies"
-LOOK = ("--size", "480x320", "--fps", "12")
+LOOK = "--size 480x320 --fps 12"
 MOVIES = {  # profile: simulated, window, speed, further options
     "geneva": ("1.5 s", "0 s:1.5 s", "1/2", ""),
     "geneva_stop": ("4 s", "0 s:4 s", "1", ""),
@@ -307,40 +93,45 @@ MOVIES = {  # profile: simulated, window, speed, further options
     "governor": ("1.2 s", "0 s:1.2 s", "1/4", ""),
     "ratchet": ("0.5 s", "0 s:0.5 s", "1/8", ""),
     "winding_click": ("0.5 s", "0 s:0.5 s", "1/8", ""),
-    "remontoir": ("1 s", "0.93 s:0.96 s", "1/120", "--zoom stop_wheel,stop_lever,wheel"),
+    "remontoir": ("1 s", "0.93 s:0.96 s", "1/120", ""),
+    "verge": ("9 s", "5 s:9 s", "1", "--zoom verge"),
+    "tourbillon": ("5.1 s", "4 s:5 s", "1/4", ""),
 }
 
 
-def movies(names: list[str]) -> None:
-    from watchsim.cli import main as watchsim
-
-    FILMS.mkdir(exist_ok=True)
-    profiles = ROOT / "profiles"
+def film(name: str, path: Path) -> None:
+    duration, window, speed, options = MOVIES[name]
     with tempfile.TemporaryDirectory() as folder:
-        for name in names or MOVIES:
-            duration, window, speed, options = MOVIES[name]
-            run, movie = f"{folder}/{name}", str(FILMS / f"{name}.gif")
-            assert watchsim(["run", str(profiles / name), "--duration", duration, "--no-plots", "-o", run]) == 0
-            shown = ["--window", window, "--speed", speed, *LOOK, *options.split()]
-            assert watchsim(["movie", run, *shown, "-o", movie]) == 0
+        run = f"{folder}/{name}"
+        called(f'watchsim run profiles/{name} --duration "{duration}" --no-plots -o {run}')
+        called(f'watchsim movie {run} --window "{window}" --speed {speed} {LOOK} {options} -o {path}')
+
+
+def called(command: str) -> None:
+    """One command line of a page, in this process."""
+    _, *words = shlex.split(command)
+    with contextlib.redirect_stdout(io.StringIO()) as said:
+        status = watchsim(words)
+    if status != 0:
+        raise SystemExit(f"failed: {command}\n{said.getvalue()}")
 
 
 GALLERY_PAGE = ROOT / "docs" / "guide" / "gallery.md"
-GALLERY = IMAGES / "gallery"
 LARGEST = 2_000_000  # bytes of one picture
 SWISS = 'watchsim run profiles/swiss_lever --duration "1.2 s" -o swiss'
+START = "watchsim check profiles/swiss_lever --png start.png"
 BEAT = '--window "0.69 s:0.94 s"'
 
 
 @dataclass(frozen=True)
 class Exhibit:
-    """A picture: its file, what it shows, and the command that makes it; `also` is run before."""
+    """A picture: its file, what it shows, and the command that makes it; `also` is run before, once."""
 
     picture: str
     title: str
     words: str
     command: str
-    also: str = ""
+    also: str = SWISS
 
 
 EXHIBITS = (
@@ -351,7 +142,6 @@ EXHIBITS = (
         "Arrows are the forces on the lever from the wheel, and on the roller's pin from the fork.",
         f"watchsim movie swiss {BEAT} --speed adaptive --length 5s --fps 16 --size 720x406 --phases --forces "
         '--inset "entry stone" --inset lever.FORK -o swiss_lever.gif',
-        SWISS,
     ),
     Exhibit(
         "tall.gif",
@@ -364,12 +154,14 @@ EXHIBITS = (
         "start.png",
         "The scene before it runs",
         "Edges that can ever touch another body are in colour.",
-        "watchsim check profiles/swiss_lever --png start.png",
+        START,
+        "",
     ),
     Exhibit(
         "start_function.png",
         "Geometry of function",
         "Lock, draw, lift, drop and the freedoms of the safety action, measured on the drawing; the same command makes it.",
+        START,
         "",
     ),
     Exhibit(
@@ -423,50 +215,40 @@ EXHIBITS = (
 )
 
 
-def gallery() -> None:
-    made(EXHIBITS, GALLERY)
-    GALLERY_PAGE.write_text(page(EXHIBITS), encoding="utf-8")
+class Shop:
+    """A folder where the commands of a group are run, each once; the profiles are found from anywhere."""
+
+    def __init__(self, first: str = "") -> None:
+        self.folder = tempfile.TemporaryDirectory()
+        self.first, self.done = first, set[str]()
+
+    def exhibit(self, one: Exhibit, path: Path) -> None:
+        here = Path.cwd()
+        os.chdir(self.folder.name)
+        try:
+            for command in (self.first, one.also, one.command):
+                if command and command not in self.done:
+                    called(command)
+                    self.done.add(command)
+            shutil.copyfile(Path(one.picture).name, path)
+        finally:
+            os.chdir(here)
 
 
-def made(exhibits: Sequence[Exhibit], images: Path, first: str = "") -> None:
-    """Run all commands in a folder of their own and keep the pictures."""
-    images.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory() as folder:
-        place = Path(folder)
-        (place / "profiles").symlink_to(ROOT / "profiles", target_is_directory=True)
-        if first:
-            run(first, place)
-        for one in exhibits:
-            for command in filter(None, (one.also, one.command)):
-                run(command, place)
-            picture = place / one.picture
-            if picture.stat().st_size > LARGEST:
-                raise SystemExit(f"{one.picture}: {picture.stat().st_size / 1e6:.1f} MB are too many")
-            shutil.copyfile(picture, images / one.picture)
-
-
-def run(command: str, folder: Path) -> None:
-    """One command line of the page, with the watchsim of this folder tree."""
-    words = shlex.split(command)
-    found = os.environ.get("PYTHONPATH")
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join((str(ROOT), found)) if found else str(ROOT)}
-    if subprocess.run([sys.executable, "-m", *words], cwd=folder, env=environment, check=False).returncode != 0:
-        raise SystemExit(f"failed: {command}")
-
-
-def page(exhibits: Sequence[Exhibit]) -> str:
-    """The page in Markdown."""
+def gallery_page() -> str:
     parts = ["# Gallery\n\nEvery picture with the commands that make it. `scripts/draw_pictures.py gallery` makes this page.\n"]
-    for one in exhibits:
+    shown = set[str]()
+    for one in EXHIBITS:
         parts.append(f"## {one.title}\n\n{one.words}\n")
-        if commands := "\n".join(filter(None, (one.also, one.command))):
-            parts.append(f"```\n{commands}\n```\n")
+        commands = [command for command in (one.also, one.command) if command and command not in shown]
+        shown.update(commands)
+        if commands:
+            parts.append("```\n" + "\n".join(commands) + "\n```\n")
         parts.append(f"![{one.title}](../images/gallery/{one.picture})\n")
     return "\n".join(parts)
 
 
 PLOTS_PAGE = ROOT / "docs" / "guide" / "plots.md"
-PLOT_IMAGES = IMAGES / "plots"
 RUN = 'watchsim run profiles/swiss_lever --duration "20 s" -o swiss --no-plots'
 
 
@@ -476,54 +258,63 @@ PLOTS = (
         "Kinematics",
         "Angle and velocity of every body (`--bodies`, `--quantities angle,velocity,acceleration`) over the run or a `--window`. Where the window shows a few beats, their phases are shaded and named. Impacts are jumps. However many rows a run has, every spike is drawn: of each column of dots the curve keeps the first, last, least and largest value.",
         'watchsim plot swiss --window "19.55 s:19.85 s" -o kinematics.png',
+        "",
     ),
     Exhibit(
         "phases.png",
         "The phases of a beat",
         "The last oscillation, and its two beats at large. `--phases` prints the tables of motion and energy, too.",
         "watchsim plot swiss --kind phases -o phases.png",
+        "",
     ),
     Exhibit(
         "timeline.png",
         "The mechanism during each phase",
         "The parts around the lever in the middle of every phase, with the contact forces on the lever as arrows of one scale; numbers show when.",
         "watchsim plot swiss --kind timeline -o timeline.png",
+        "",
     ),
     Exhibit(
         "torque.png",
         "Torque on the balance",
         "The moment of all contact forces on the balance over its angle, positive with its swing: below zero the balance unlocks, above it is driven. An area is the work of the forces; on it stands what the phase gives in all, with the impacts, the number of `phases.csv`. The table has both parts. They are worked out twice: from contact forces and jumps here, from the books of the balance there.",
         "watchsim plot swiss --kind torque -o torque.png",
+        "",
     ),
     Exhibit(
         "forces.png",
         "Forces",
         "What the bodies of each pair press and rub, summed over their contacts, and the loads of the bearings. Impacts have impulses, not forces, and are not shown.",
         "watchsim plot swiss --kind forces -o forces.png",
+        "",
     ),
     Exhibit(
         "portrait.png",
         "Phase portrait",
         "Velocity over angle of one oscillation, phases in colour.",
         "watchsim plot swiss --kind phase-portrait -o portrait.png",
+        "",
     ),
     Exhibit(
         "energy.png",
         "Energy",
         "What was put in over the whole run, and where it went; below, each phase of the last two beats. The black line is the work of the drive; where bars reach beyond it stores gave the rest, to the left of zero.",
         "watchsim plot swiss --kind energy -o energy.png",
+        "",
     ),
     Exhibit(
         "timing.png",
         "Amplitude, rate and beat error",
         "Of every half swing of whatever swings, heard or not.",
         "watchsim plot swiss --kind timing -o timing.png",
+        "",
     ),
     Exhibit(
         "tape.png",
         "Paper of a timegrapher",
         "As an instrument would write it that hears the first noise of each beat.",
         "watchsim plot swiss --kind tape -o tape.png",
+        "",
     ),
 )
 HEAD = f"""# Plots
@@ -543,67 +334,159 @@ of these pages (`watchsim.render.style`). `scripts/draw_pictures.py plots` makes
 """
 
 
-def plots() -> None:
-    made(PLOTS, PLOT_IMAGES, RUN)
+def plots_page() -> str:
     parts = [HEAD]
     for one in PLOTS:
         words = f"## {one.title}\n\n{one.words}\n\n```\n{one.command}\n```\n"
         parts.append(f"{words}\n![{one.title}](../images/plots/{one.picture})\n")
-    PLOTS_PAGE.write_text("\n".join(parts), encoding="utf-8")
+    return "\n".join(parts)
 
 
+# Single pictures of other pages, by commands.
+COAXIAL = 'watchsim run profiles/coaxial --duration "180.2 s" --no-plots -o coaxial'
+SINGLE = (
+    Exhibit(
+        "swiss_lever_beat.png",
+        "README",
+        "",
+        'watchsim plot beats --window "0.62 s:1.02 s" -o swiss_lever_beat.png',
+        'watchsim run profiles/swiss_lever --duration "1.2 s" --no-plots -o beats',
+    ),
+    Exhibit(
+        "tape_eccentric.png",
+        "docs/guide/verdicts.md",
+        "",
+        "watchsim plot eccentric --kind tape -o tape_eccentric.png",
+        'watchsim run profiles/swiss_lever --duration "60 s" --no-plots --set \'bodies.wheel.adjust.TEETH.shift=["-5 µm","0 µm"]\' -o eccentric',
+    ),
+    Exhibit(
+        "coaxial_function.png", "docs/guide/coaxial.md", "", "watchsim check profiles/coaxial --sheet coaxial_function.png", ""
+    ),
+    Exhibit(
+        "coaxial_turn.png", "docs/guide/coaxial.md", "", "watchsim check profiles/coaxial --turn --png coaxial_turn.png", ""
+    ),
+    Exhibit(
+        "coaxial_phases.png", "docs/guide/coaxial.md", "", "watchsim plot coaxial --kind phases -o coaxial_phases.png", COAXIAL
+    ),
+)
 TOLERANCE_DPI = 160
 
 
-def tolerances() -> None:
-    """The studies of docs/guide/tolerances.md: 256 watches each, some minutes; what results/ holds is gone on with."""
-    for scene in sorted((ROOT / "docs" / "guide" / "tolerances").glob("*.toml")):
-        folder = ROOT / "results" / f"tolerances_{scene.stem}"
-        study = ws.tolerance(scene, 256, workers=2, folder=folder, resume=True)
-        ws.plot_tolerance(study).savefig(IMAGES / f"tolerances_{scene.stem}.png", dpi=TOLERANCE_DPI)
-        print(f"{scene.stem}: {study.message}")
+def tolerances(name: str, path: Path) -> None:
+    """A study of docs/guide/tolerances.md: 256 watches; what results/ holds is gone on with."""
+    scene = ROOT / "docs" / "guide" / "tolerances" / f"{name}.toml"
+    study = ws.tolerance(scene, 256, workers=2, folder=ROOT / "results" / f"tolerances_{name}", resume=True)
+    ws.plot_tolerance(study).savefig(path, dpi=TOLERANCE_DPI)
 
 
-def positions() -> None:
+def positions(path: Path) -> None:
     """The dials of docs/guide/positions.md."""
     found = ws.positions(ROOT / "docs" / "guide" / "positions" / "swiss_lever.toml", workers=2)
-    ws.plot_positions(found).savefig(IMAGES / "positions.png", dpi=TOLERANCE_DPI)
+    ws.plot_positions(found).savefig(path, dpi=TOLERANCE_DPI)
 
 
-def shrink() -> None:
-    """PNG files with a palette of 256 colours where no pixel changes by more than can be seen (24 of 255, 0.3 on average)."""
-    for path in IMAGES.rglob("*.png"):
-        with Image.open(path) as picture:
-            if picture.mode == "P":
-                continue
-            rgb = picture.convert("RGB")
-        small = rgb.quantize(256, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
-        off = np.abs(np.asarray(rgb, int) - np.asarray(small.convert("RGB"), int))
-        if off.max() <= 24 and off.mean() <= 0.3:
-            small.save(path, optimize=True)
+def exhibits(shown: Iterable[Exhibit], folder: str, first: str = "") -> dict[str, Make]:
+    shop = Shop(first)
+    return {f"{folder}{one.picture}": partial(shop.exhibit, one) for one in shown}
 
 
-PARTS = {
-    "kinds": contact_kinds,
-    "laws": laws,
-    "beat": beat,
-    "gallery": gallery,
-    "plots": plots,
-    "tolerances": tolerances,
-    "positions": positions,
-    "shrink": shrink,
+def groups() -> dict[str, dict[str, Make]]:
+    """Group -> picture, by its path in docs/images -> what writes it to a path."""
+    return {
+        "theory": dict(THEORY),
+        "mechanisms": {f"{name}.png": partial(mechanism, name) for name in SHOWN},
+        "movies": {f"movies/{name}.gif": partial(film, name) for name in MOVIES},
+        "pages": exhibits(SINGLE, ""),
+        "gallery": exhibits(EXHIBITS, "gallery/"),
+        "plots": exhibits(PLOTS, "plots/", RUN),
+        "positions": {"positions.png": positions},
+        "tolerances": {f"tolerances_{name}.png": partial(tolerances, name) for name in ("coaxial", "swiss_lever")},
+    }
+
+
+# Pictures of measurements: the script that measures and draws.
+MEASURED = {
+    "complexity.png": "scripts/reports/speed.py",
+    "convergence.png": "scripts/reports/convergence.py",
+    "long_runs.png": "scripts/reports/long_runs.py",
+    "reading_speed.png": "scripts/reports/speed.py",
+    "speed.png": "scripts/reports/speed.py",
+    "stability_grid.png": "scripts/reports/stability.py",
+    "stability_margins.png": "scripts/reports/stability.py",
 }
-OF_PROFILES = {"mechanisms": mechanisms, "movies": movies}
+# Pictures of studies of many hours for 0.1, kept with the numbers of their pages; their labels are checked by eye.
+KEPT = {
+    "balance_solids.png",
+    *(f"coaxial_{name}.png" for name in ("best", "direct", "friction", "indirect", "isochronism", "range", "twin")),
+    *(f"swiss_study_{name}.png" for name in ("best", "friction", "isochronism", "period", "run_down", "sensitivity")),
+    *(f"swiss_study_{name}.png" for name in ("temperature", "torque")),
+}
+
+
+@contextlib.contextmanager
+def heard() -> Iterator[set[str]]:
+    """The words of all figures that are drawn meanwhile."""
+    found: set[str] = set()
+    draw = Figure.draw
+
+    def listening(self: Figure, renderer: Any) -> None:
+        draw(self, renderer)
+        for text in self.findobj(Text):
+            if text.get_visible() and "$" not in text.get_text():
+                found.update(re.findall(r"[^\W\d_]{3,}", text.get_text()))
+
+    Figure.draw = listening  # type: ignore[method-assign, assignment]
+    try:
+        yield found
+    finally:
+        Figure.draw = draw  # type: ignore[method-assign]
+
+
+def drawn(wanted: Mapping[str, Make], images: Path) -> dict[str, list[str]]:
+    """Draw those pictures below `images`, and give the words of each."""
+    words = {}
+    for name, make in wanted.items():
+        path = images / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with heard() as found:
+            make(path)
+        if path.stat().st_size > LARGEST:
+            raise SystemExit(f"{name}: {path.stat().st_size / 1e6:.1f} MB are too many")
+        words[name] = sorted(found)
+    return words
+
+
+def shrink(path: Path) -> None:
+    """A palette of 256 colours where no pixel changes by more than can be seen (24 of 255, 0.3 on average)."""
+    with Image.open(path) as picture:
+        if path.suffix != ".png" or picture.mode == "P":
+            return
+        rgb = picture.convert("RGB")
+    small = rgb.quantize(256, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
+    off = np.abs(np.asarray(rgb, int) - np.asarray(small.convert("RGB"), int))
+    if off.max() <= 24 and off.mean() <= 0.3:
+        small.save(path, optimize=True)
+
+
+def main(name: str) -> None:
+    known = groups()
+    every = {picture: make for group in known.values() for picture, make in group.items()}
+    wanted = every if name == "all" else known.get(name) or ({name: every[name]} if name in every else {})
+    if not wanted:
+        raise SystemExit(f"{name}: all, one of {', '.join(known)}, or a picture such as {next(iter(every))}")
+    for picture, make in wanted.items():
+        words = drawn({picture: make}, IMAGES)
+        shrink(IMAGES / picture)
+        kept = json.loads(WORDS.read_text(encoding="utf-8")) if WORDS.exists() else {}
+        WORDS.write_text(
+            json.dumps(dict(sorted({**kept, **words}.items())), ensure_ascii=False, indent=0) + "\n", encoding="utf-8"
+        )
+        print(picture, flush=True)
+    GALLERY_PAGE.write_text(gallery_page(), encoding="utf-8")
+    PLOTS_PAGE.write_text(plots_page(), encoding="utf-8")
+
 
 if __name__ == "__main__":
     from usage import arguments
 
-    asked = arguments(
-        __doc__, part=(..., ", ".join((*PARTS, *OF_PROFILES))), profile=("", "of mechanisms and movies, one of them")
-    )
-    if asked.part in PARTS:
-        PARTS[asked.part]()
-    elif asked.part in OF_PROFILES:
-        OF_PROFILES[asked.part]([asked.profile] if asked.profile else [])
-    else:
-        raise SystemExit(f"{asked.part}: one of {', '.join((*PARTS, *OF_PROFILES))}")
+    main(arguments(__doc__, name=(..., "all, a group, or a picture by its path in docs/images")).name)
