@@ -114,7 +114,7 @@ const open = (told) => {
   curves = new Curves(data, motion, contacts, view);
   const seek = (t) => { player.toggle(false); player.seek(t); };
   plots = new Plots($("plots"), data, curves, seek); strip = new Strip($("plots"), data, sound, seek);
-  span = player.end - player.start; trackKey = toldAt = announced = "";
+  span = player.end - player.start; trackKey = shownAt = announced = "";
   $("parts").replaceChildren(); $("whose").replaceChildren();
   chips = data.bodies.slice(0, MANY).map(chipOf);
   for (const b of curves.movers) $("whose").add(new Option(data.bodies[b].name, String(b)));
@@ -142,7 +142,7 @@ const resume = ({ data: before, view: sight, player: was, plots: charts, sound: 
   if (solid.on && solids.any && solids.turn(true)) Object.assign(solids, { tilt: solid.tilt, yaw: solid.yaw });
   const anchor = sight.anchor && [now(sight.anchor[0]), ...sight.anchor.slice(1)];
   Object.assign(view, { turn: sight.turn, zoom: sight.scale / view.base, anchor: anchor && anchor[0] >= 0 ? anchor : null });
-  if (view.anchor || view.told.follow) view.shift = sight.shift.slice();
+  if (view.anchor || view.data.follow) view.shift = sight.shift.slice();
   else { view.aim(motion.poses(player.t)); view.shift = [sight.centre[0] - view.centre[0], sight.centre[1] - view.centre[1]]; }
   plots.stale(); dirty = true;
 };
