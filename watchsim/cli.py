@@ -104,7 +104,7 @@ def parser() -> argparse.ArgumentParser:
         module = importlib.import_module(f"watchsim.commands.{name}")
         sub = commands.add_parser(name, help=module.HELP, description=module.__doc__)
         module.options(sub)
-        sub.set_defaults(run=module.run)
+        sub.set_defaults(run=module.run, top=top)  # the whole, of which one makes completions
     return top
 
 

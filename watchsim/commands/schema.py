@@ -6,6 +6,7 @@ import argparse
 import sys
 from pathlib import Path
 
+from watchsim.commands.completion import SHELLS, script
 from watchsim.commands.console import FINE, print_json
 
 HELP = "the JSON Schema of a scene file (Draft 4), for editors; or the paths of one for --set"
@@ -14,6 +15,9 @@ HELP = "the JSON Schema of a scene file (Draft 4), for editors; or the paths of 
 def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-o", "--output", metavar="FILE", help="write it there instead of printing it")
     parser.add_argument("--paths", metavar="SCENE", help="list the paths of that scene, each with its value, instead")
+    parser.add_argument(
+        "--completion", metavar="SHELL", choices=SHELLS, help="print what completes commands in bash, zsh or fish"
+    )
     parser.add_argument("--json", action="store_true", help="print one JSON object (the schema is one)")
 
 
@@ -24,7 +28,9 @@ def run(args: argparse.Namespace) -> int:
     from watchsim.scene.schema import schema_text
     from watchsim.storage.write import write_file
 
-    if args.paths:
+    if args.completion:
+        sys.stdout.write(script(args.top, args.completion))
+    elif args.paths:
         found = paths_of(load(args.paths).source)
         if args.json:
             print_json(found)

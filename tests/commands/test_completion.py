@@ -1,0 +1,45 @@
+"""Do shells complete commands, and the paths of a scene behind --set?"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from watchsim.cli import main
+from watchsim.commands.completion import SHELLS
+
+
+@pytest.mark.skipif(shutil.which("bash") is None, reason="needs bash")
+@pytest.mark.parametrize(
+    ("words", "found"),
+    [("sche", "schema"), ("run a --set design.lo", "design.lock="), ("check a --set torques.0.v", "torques.0.value=")],
+)
+def test_bash_completes(words, found, tmp_path, capsys):
+    assert main(["new", "swiss_lever", "-o", str(tmp_path / "a")]) == 0
+    capsys.readouterr()
+    assert main(["schema", "--completion", "bash"]) == 0
+    (tmp_path / "script").write_text(capsys.readouterr().out, encoding="utf-8")
+    typed = (
+        f"COMP_WORDS=(watchsim {words}); COMP_CWORD={len(words.split())}; _shtab_watchsim; printf '%s\\n' \"${{COMPREPLY[@]}}\""
+    )
+    path = f"{Path(sys.executable).parent}:{os.environ['PATH']}"
+    made = subprocess.run(
+        ["bash", "-c", f". ./script; {typed}"],
+        cwd=tmp_path,
+        env={**os.environ, "PATH": path},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert made.stdout.split() == [found]
+
+
+@pytest.mark.parametrize("shell", SHELLS)
+def test_each_shell_has_a_script_with_paths(shell, capsys):
+    assert main(["schema", "--completion", shell]) == 0
+    assert "watchsim schema --paths" in capsys.readouterr().out
