@@ -201,7 +201,10 @@ COULOMB, PG1996, SHIFTED = 0, 1, 2
 TANGENTIAL_CODE = {"coulomb": COULOMB, "pg1996": PG1996, "shifted": SHIFTED}
 LAW = np.dtype(
     [
-        ("friction", "f8"),
+        ("friction", "f8"),  # without slip
+        ("drop", "f8"),  # by how much less friction tends to as the contact slides
+        ("decay", "f8"),  # m/s: slip at which all but 1/e of the drop is done; 0: it is done as soon as the contact slides
+        ("rise", "f8"),  # s/m: friction grows by as much per slip
         ("restitution", "f8"),
         ("tangential", "f8"),  # tangential restitution
         ("kind", "i8"),  # which tangential law of the expansion

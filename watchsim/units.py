@@ -77,10 +77,11 @@ ROTARY_CUBIC = Dimension("rotary cubic stiffness", ((2, 1, -2, -3, 0),), "N·m/r
 LINEAR_CUBIC = Dimension("cubic stiffness", ((-2, 1, -2, 0, 0),), "N/m³", ("N/mm³", "N/m³"))
 TEMPERATURE = Dimension("temperature", ((0, 0, 0, 0, 1),), "°C", ("°C", "°C"))  # nothing here needs its absolute value
 PER_KELVIN = Dimension("temperature coefficient", ((0, 0, 0, 0, -1),), "/K", ("ppm/K", "ppm/K"))
+PER_SPEED = Dimension("rate per speed", ((-1, 0, 1, 0, 0),), "s/m", ("s/m", "s/mm"))
 DIMENSIONS = (
     *(NUMBER, ANGLE, SPIN, LENGTH, MASS, TIME, SPEED, ACCELERATION, PRESSURE, DENSITY, INERTIA, TORQUE, FORCE, FREQUENCY),
     *(ROTARY_STIFFNESS, LINEAR_STIFFNESS, ROTARY_VISCOUS, LINEAR_VISCOUS, ROTARY_QUADRATIC, LINEAR_QUADRATIC, RATE),
-    *(TRAVEL_PER_TURN, PER_LENGTH, ROTARY_CUBIC, LINEAR_CUBIC, TEMPERATURE, PER_KELVIN),
+    *(TRAVEL_PER_TURN, PER_LENGTH, ROTARY_CUBIC, LINEAR_CUBIC, TEMPERATURE, PER_KELVIN, PER_SPEED),
 )
 
 _PREFIXES = {"n": -9, "µ": -6, "u": -6, "m": -3, "c": -2, "d": -1, "k": 3, "M": 6, "G": 9}

@@ -127,13 +127,13 @@ class Balanced(NamedTuple):
 
 
 class Mechanism:
-    """What is the same at every instant, looked up once: mobilities, dry friction of bearings, friction of each contact."""
+    """What is the same at every instant, looked up once: mobilities, dry friction of bearings, law of each contact."""
 
     def __init__(self, compiled: Compiled) -> None:
         model = self.model = compiled.model
         self.mobility, self.dry = 1.0 / np.asarray(model.coordinates.mass), np.asarray(model.coordinates.coulomb)
         self.prescribed = np.asarray(model.coordinates.driven) != 0
-        self.friction = np.asarray(model.laws.friction)[np.asarray(model.contacts.group)]
+        self.laws = model.laws[np.asarray(model.contacts.group)]
 
     def balanced(self, t: Array, q: Array, u: Array, modes: Mapping[int, int]) -> Balanced:
         """Forces of the contacts in `modes` at times t (n,) with coordinates q and velocities u (n, coordinates)."""
@@ -143,7 +143,9 @@ class Mechanism:
         mobility = np.where(held | self.prescribed, 0.0, self.mobility)
         h = seen.h - self.dry * np.sign(u)
         free = np.where(self.prescribed, h, mobility * h)
-        force = self._forces(seen, mobility, free, ids, np.array([modes[k] for k in ids.tolist()]))
+        codes = np.array([modes[k] for k in ids.tolist()])
+        slip = np.einsum("nmc,nc->nm", seen.w_T, u) + 0.0 if len(ids) else np.zeros((len(t), 0))
+        force = self._forces(seen, mobility, free, self._coefficients(ids, codes, slip), codes)
         load = (force[:, :, :1] * seen.w_N + force[:, :, 1:] * seen.w_T).sum(axis=1)
         return Balanced(ids, force, seen.normal, seen.point, load, free + mobility * load)
 
@@ -154,9 +156,17 @@ class Mechanism:
         balance(self.model, t, q, u, ids, poses(len(self.model.bodies)), closed_contacts(1), seen)
         return seen
 
-    def _forces(self, seen: Seen, mobility: Array, free: Array, ids: NDArray[np.int64], modes: NDArray[np.int64]) -> Array:
-        """(n, m, 2): along normal and tangent. The smallest where contacts are redundant."""
-        rows, friction = len(ids), self.friction[ids]
+    def _coefficients(self, ids: NDArray[np.int64], modes: NDArray[np.int64], slip: Array) -> Array:
+        """(n, m): of friction, by mode and speed of slip (m/s); of what sticks, up to which it holds."""
+        laws = self.laws[ids]
+        speed = np.where(modes == STICK, 0.0, np.maximum(modes * slip, 0.0))
+        decay = np.asarray(laws.decay)
+        left = np.where(decay > 0.0, np.exp(-speed / np.where(decay > 0.0, decay, 1.0)), modes == STICK)
+        return np.asarray(laws.friction) - np.asarray(laws.drop) * (1.0 - left) + np.asarray(laws.rise) * speed
+
+    def _forces(self, seen: Seen, mobility: Array, free: Array, friction: Array, modes: NDArray[np.int64]) -> Array:
+        """(n, m, 2): along normal and tangent. The smallest where contacts are redundant. `friction` (n, m)."""
+        rows = len(modes)
         force = np.zeros((len(free), rows, 2))
         if not rows:
             return force
@@ -165,7 +175,7 @@ class Mechanism:
         slide = np.where(modes == STICK, 0.0, -friction * modes)
         hold = np.concatenate((seen.w_N, seen.w_T[:, sticks]), axis=1)
         bar = np.concatenate((seen.bar[:, 0], seen.bar[:, 1, sticks]), axis=1)
-        push = np.concatenate((seen.w_N + slide[:, None] * seen.w_T, seen.w_T[:, sticks]), axis=1)
+        push = np.concatenate((seen.w_N + slide[:, :, None] * seen.w_T, seen.w_T[:, sticks]), axis=1)
         system, right = hold * mobility[:, None, :], -bar - (hold @ free[:, :, None])[:, :, 0]
         unknown = _least(system @ push.transpose(0, 2, 1), right)
         force[:, :, 0], force[:, :, 1] = unknown[:, :rows], slide * unknown[:, :rows]
@@ -174,7 +184,8 @@ class Mechanism:
         beyond = (np.abs(force[:, :, 1]) > friction * force[:, :, 0] + SLACK * most[:, None]).any(axis=1)
         if beyond.any():
             directions = (seen.w_N[beyond], seen.w_T[beyond])
-            force[beyond] = _within_cones(system[beyond], right[beyond], directions, (sticks, slide, friction))
+            laws = (sticks, slide[beyond], friction[beyond])
+            force[beyond] = _within_cones(system[beyond], right[beyond], directions, laws)
         return force
 
 
@@ -192,12 +203,12 @@ def _within_cones(
 ) -> Array:
     """Forces (n, m, 2) of redundant contacts: of all that balance, those that press and stay within their cones of friction."""
     (w_n, w_t), (sticks, slide, friction) = directions, laws
-    rows = len(slide)
+    rows = slide.shape[1]
     # Along the edges of the cones: one of a contact that slides; of one that sticks two, the second behind all others.
     owner = np.concatenate((np.arange(rows), sticks))
-    lean = np.concatenate((slide, -friction[sticks]))
-    lean[sticks] = friction[sticks]
-    ways = w_n[:, owner] + lean[:, None] * w_t[:, owner]
+    lean = np.concatenate((slide, -friction[:, sticks]), axis=1)
+    lean[:, sticks] = friction[:, sticks]
+    ways = w_n[:, owner] + lean[:, :, None] * w_t[:, owner]
     shares = _pressing(system @ ways.transpose(0, 2, 1), right)
     force = np.stack((shares, lean * shares), axis=2)
     force[:, sticks] += force[:, rows:]

@@ -16,6 +16,7 @@ from xml.sax.saxutils import quoteattr
 
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Edge, Line, Point
+from watchsim.scene.forces import CONSTANT
 from watchsim.scene.scene import Body, Scene
 
 MODULES = {"pymunk": "pymunk", "box2d": "Box2D", "mujoco": "mujoco"}
@@ -218,6 +219,8 @@ def drives(scene: Scene) -> list[Drive]:
         raise ValueError("a tabled torque: not compared with other engines")
     if any(damping.quadratic or damping.coulomb for damping in scene.damping):
         raise ValueError("damping other than viscous: not compared with other engines")
+    if any(contact.slip != CONSTANT for contact in scene.contacts):
+        raise ValueError("friction that depends on speed: not compared with other engines")
     found = []
     for body in scene.bodies:
         springs = [spring for spring in scene.springs if spring.body == body.name]

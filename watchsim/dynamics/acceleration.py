@@ -11,8 +11,10 @@ from watchsim.dynamics.delassus import apply, fill_bearings, fill_delassus, inve
 from watchsim.dynamics.friction import (
     add_element,
     choose_signs,
+    drops_at_once,
     fill_matrix,
     fill_rhs,
+    friction_at,
     jams,
     keep_basis,
     law_of,
@@ -91,9 +93,10 @@ def solve_mode(model, closed, m, mode, lenience, system, modes):
     _pose(model, closed, m, system)
     n = m
     for i in range(m):
-        state, friction = mode[closed.ids[i]], law_of(model, closed.ids[i]).friction
+        state, law = mode[closed.ids[i]], law_of(model, closed.ids[i])
+        friction = law.friction
         modes.unknown[i], modes.friction[i] = -1, friction
-        modes.drag[i] = 0.0 if state == STICK else friction * state
+        modes.drag[i] = 0.0 if state == STICK else friction_at(law, state * closed.kin[i].gT_dot) * state
         modes.scale[i] = unit_scale(system.G[2 * i, 2 * i])
         if state == STICK and friction > 0.0:
             modes.unknown[i] = n
@@ -141,18 +144,13 @@ def decide_modes(model, closed, m, bearings, speed_zero, system, problem, out_gr
         i, row = problem.bearing[p], 2 * m + p
         system.b[row] = system.h[i] * system.inverse[i]
         system.size[row] = abs(system.b[row])
-    elements = _elements(model, closed, m, bearings, speed_zero, problem)
-    choose_signs(system.G, system.b, m, 2 * m + bearings, elements, problem)
-    fill_matrix(system.G, m, elements, problem)
-    _load(system, m, elements, bearings, problem)
-    fill_rhs(problem.loaded, m, elements, problem)
-    pressed = press_unloaded(model, closed, m, system, problem)
-    solver = solve_contacts(m, elements, bearings, Level.ACCELERATION, problem)
-    if solver == Solver.FAILED:
-        return False
-    if pressed:
-        keep_basis(problem.loaded, m, elements, solver, problem)
-    read_forces(m, elements, problem, system.force)
+    problem.begun[:m] = STICK
+    elements, begins = -1, True
+    while begins:
+        elements = _solve(model, closed, m, bearings, speed_zero, system, problem)
+        if elements < 0:
+            return False
+        begins = _begin_sliding(model, closed, m, elements, bearings, system, problem)
     for i in range(m):
         if problem.x[i] > 0.0 and _slides_into_jam(system, m, i, problem):
             return False
@@ -166,14 +164,49 @@ def decide_modes(model, closed, m, bearings, speed_zero, system, problem, out_gr
 
 
 @kernel
+def _solve(model, closed, m, bearings, speed_zero, system, problem):
+    """Pose the problem and solve it, forces into `system.force`; returns the number of elements, -1 without a solution."""
+    elements = _elements(model, closed, m, bearings, speed_zero, problem)
+    choose_signs(system.G, system.b, m, 2 * m + bearings, elements, problem)
+    fill_matrix(system.G, m, elements, problem)
+    _load(system, m, elements, bearings, problem)
+    fill_rhs(problem.loaded, m, elements, problem)
+    pressed = press_unloaded(model, closed, m, system, problem)
+    solver = solve_contacts(m, elements, bearings, Level.ACCELERATION, problem)
+    if solver == Solver.FAILED:
+        return -1
+    if pressed:
+        keep_basis(problem.loaded, m, elements, solver, problem)
+    read_forces(m, elements, problem, system.force)
+    return elements
+
+
+@kernel
+def _begin_sliding(model, closed, m, elements, bearings, system, problem):
+    """Note the contacts that static friction does not hold and that slide with less; True if any is new: solve again.
+
+    What it holds goes on sticking, though sliding might be a solution, too (docs/theory/method.md 2.5).
+    """
+    found = False
+    for i in range(m):
+        if problem.element[i] < 0 or not drops_at_once(law_of(model, closed.ids[i])):
+            continue
+        mode = _mode_of(closed, i, m, elements, bearings, system, problem)
+        if mode in (FORWARD, BACKWARD):
+            problem.begun[i], found = mode, True
+    return found
+
+
+@kernel
 def _elements(model, closed, m, bearings, speed_zero, problem):
     """The contacts that may stick, then the bearings; returns how many."""
     elements = 0
     for i in range(m):
-        friction, slip = law_of(model, closed.ids[i]).friction, closed.kin[i].gT_dot
+        law, slip, begun = law_of(model, closed.ids[i]), closed.kin[i].gT_dot, problem.begun[i]
+        friction, slides = law.friction, friction_at(law, abs(slip))
         problem.element[i] = -1
-        problem.drag[i] = friction if slip > 0.0 else -friction
-        if friction > 0.0 and abs(slip) <= speed_zero:
+        problem.drag[i] = slides if begun == FORWARD or (slip > 0.0 and begun == STICK) else -slides
+        if friction > 0.0 and abs(slip) <= speed_zero and begun == STICK:
             problem.element[i], problem.drag[i] = elements, friction
             elements = add_element(problem, i, elements, (2.0 * friction, 0.0, 0.0))
     for p in range(bearings):
@@ -218,6 +251,8 @@ def _mode_of(closed, i, m, elements, bearings, system, problem):
     pressed, e = problem.x[i] > 0.0, problem.element[i]
     if not pressed and _row_acceleration(system, rows, N) > ACCELERATION_ROUNDING * row_terms(system, drag, m, rows, N):
         return OPEN
+    if problem.begun[i] != STICK:
+        return problem.begun[i]
     if e < 0:
         return BACKWARD if closed.kin[i].gT_dot < 0.0 else FORWARD
     slip = problem.friction_sign[T] * _row_acceleration(system, rows, T)  # as the problem has it

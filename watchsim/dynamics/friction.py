@@ -15,6 +15,7 @@ For contacts known to slide L is mu times the direction of slip, and they have n
 
 from __future__ import annotations
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -58,6 +59,30 @@ def law_of(model, k):
     return model.laws[model.contacts[k].group]
 
 
+@kernel
+def friction_at(law, speed):
+    """Coefficient of friction of a contact that slides at `speed`, m/s, in the direction of its mode (Stribeck's law).
+
+    Smooth also a little beyond a reversal, where `speed` is negative and the step will end.
+    """
+    if law.drop == 0.0 and law.rise == 0.0:
+        return law.friction
+    left = math.exp(min(-speed / law.decay, 1.0)) if law.decay > 0.0 else 0.0
+    return law.friction - law.drop * (1.0 - left) + law.rise * speed
+
+
+@kernel
+def friction_bound(law, slip):
+    """Coefficient of friction at a slip in either direction, m/s; that of rest without slip."""
+    return law.friction if slip == 0.0 else friction_at(law, abs(slip))
+
+
+@kernel
+def drops_at_once(law):
+    """True if friction is less as soon as the contact slides: then what may stick and what slides are not one law."""
+    return law.drop > 0.0 and law.decay == 0.0
+
+
 class LastProblem:
     """The last problem: what it was about, and how Lemke's method ended."""
 
@@ -82,6 +107,7 @@ class FrictionProblem(NamedTuple):
     bearing: Integers  # (n,) coordinate of each bearing that might hold
     drag: Array  # (room,) friction per normal force at the lower end of the interval
     element: Integers  # (room,) of each contact, -1: none
+    begun: Integers  # (room,) mode of a contact that begins to slide with less friction than it had, STICK: none
     block: Integers  # (blocks,) by element
     width: Array  # (blocks,) length of an element's interval per normal force
     span: Array  # (blocks,) constant part of its length
@@ -105,7 +131,8 @@ def friction_problem(room: int, coordinates: int, lcp: LcpWork) -> FrictionProbl
     rows, blocks, side = 2 * room + coordinates, room + coordinates, problem_size(room, coordinates)
     lengths = {"drag": room, "width": blocks, "span": blocks, "shift": blocks, "unit": blocks, "loaded": rows}
     lengths |= dict.fromkeys(("rhs", "x", "other_rhs", "other_x"), side)
-    counts = {"solvers": len(Solver), "sizes": len(LARGEST) + 1, "bearing": coordinates, "element": room, "block": blocks}
+    counts = {"solvers": len(Solver), "sizes": len(LARGEST) + 1, "bearing": coordinates}
+    counts |= {"element": room, "begun": room, "block": blocks}
     parts: dict[str, Any] = {name: np.zeros(length) for name, length in lengths.items()}
     parts |= {name: np.zeros(length, np.int64) for name, length in counts.items()}
     parts |= {name: np.zeros((side, side)) for name in ("A", "B")}

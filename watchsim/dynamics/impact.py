@@ -21,6 +21,7 @@ from watchsim.dynamics.friction import (
     element_row,
     fill_matrix,
     fill_rhs,
+    friction_bound,
     keep_basis,
     law_of,
     read_forces,
@@ -54,14 +55,14 @@ def impact_phases(room: int) -> ImpactPhases:
 
 
 @kernel
-def interval(law, restitution, normal, tangential):
+def interval(law, mu, restitution, normal, tangential):
     """Where the friction impulse of the expansion may lie: (L, l, l_0, c, returned), see friction.py and docs/theory/laws.md.
 
     From c - L Lambda_NP to c - L Lambda_NP + l Lambda_NP + l_0, where Lambda_NP is what the normal impulse has beyond eps_N
     times that of the compression. `restitution` is eps_N as used, the impulses are those of the compression; `returned` is the
     tangential impulse eps_N eps_T Lambda_TC, whose slip pg1996 may offset by nu.
     """
-    mu, back = law.friction, restitution * normal
+    back = restitution * normal
     if law.kind == SHIFTED:
         # A smaller eps_N (after an energy gain, at an accumulation) takes eps_T with it.
         share = min(law.tangential, restitution)
@@ -92,7 +93,7 @@ def impact(model, closed, m, restitution, jam_speed, system, problem, phases, ou
     fill_delassus(closed, m, system.inverse, system.G)
     contact_velocities(closed, m, out_u, phases.rates)
     _drop_rounding(closed, m, out_u, phases.rates)
-    elements = _elements(model, closed, m, problem)
+    elements = _elements(model, closed, m, phases.rates, problem)
     if not _compress(m, elements, jam_speed, system.G, problem, phases):
         return False
     returns = False
@@ -120,11 +121,14 @@ def _drop_rounding(closed, m, u, out_rates):
 
 
 @kernel
-def _elements(model, closed, m, problem):
-    """Coulomb friction within ± mu Lambda_N for every contact that has any; returns the number of elements."""
+def _elements(model, closed, m, rates, problem):
+    """Coulomb friction within ± mu Lambda_N for every contact that has any; returns the number of elements.
+
+    mu is that of the slip before the impact.
+    """
     elements = 0
     for i in range(m):
-        problem.drag[i] = law_of(model, closed.ids[i]).friction
+        problem.drag[i] = friction_bound(law_of(model, closed.ids[i]), rates[2 * i + 1])
         problem.element[i] = -1
         if problem.drag[i] > 0.0:
             problem.element[i] = elements
@@ -214,7 +218,8 @@ def _expand(model, closed, m, restitution, elements, G, problem, phases):
         phases.more[N], phases.more[T], phases.offset[i] = restitution[i] * normal, 0.0, 0.0
         if e >= 0:
             law = law_of(model, closed.ids[i])
-            low, width, span, shift, returned = interval(law, restitution[i], normal, tangential)
+            mu = friction_bound(law, phases.rates[T])
+            low, width, span, shift, returned = interval(law, mu, restitution[i], normal, tangential)
             problem.drag[i], phases.more[T], phases.offset[i] = low, sign[T] * shift, sign[T] * (law.nu * returned)
             add_element(problem, i, e, (width, span, shift))
     for row in range(2 * m):
@@ -244,9 +249,9 @@ def plastic_impact(model, closed, m, time, u, system, problem, phases):
 
     The compression of the rates that free motion over `time` (s) would lead to (a step of Moreau's scheme at fixed positions).
     """
-    elements = _elements(model, closed, m, problem)
     fill_delassus(closed, m, system.inverse, system.G)
     contact_velocities(closed, m, u, phases.rates)
+    elements = _elements(model, closed, m, phases.rates, problem)
     gap_accelerations(model, closed, m, system)
     for row in range(2 * m):
         phases.rates[row] += time * system.b[row]

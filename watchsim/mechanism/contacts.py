@@ -245,7 +245,8 @@ def declared_contacts(
     for group, contact in enumerate(scene.contacts):
         # One write of a record instead of one for each of its fields.
         kind = TANGENTIAL_CODE[scene.tangential_law]
-        laws[group] = (contact.friction, contact.restitution, contact.tangential_restitution, kind, scene.nu)
+        slip = (contact.slip.drop, contact.slip.decay, contact.slip.rise)
+        laws[group] = (contact.friction, *slip, contact.restitution, contact.tangential_restitution, kind, scene.nu)
         first, last = (sides[side] for side in contact.sides)
         i, j = (riding[number[side.body]].part_of for side in contact.sides)
         found.setdefault((min(i, j), max(i, j)), []).append((first, last, group))

@@ -181,7 +181,13 @@ def _damping(scene: Scene, damping: Damping) -> str:
 def _contact_lines(scene: Scene) -> Iterator[str]:
     for contact in scene.contacts:
         first, second = contact.sides
-        text = f"friction {contact.friction:g}, restitution {contact.restitution:g}"
+        slip, text = contact.slip, f"friction {contact.friction:g}"
+        if slip.drop:
+            text += f", sliding {contact.friction - slip.drop:g}"
+            text += f" (decay {metric(slip.decay, 'm/s')})" if slip.decay else ""
+        if slip.rise:
+            text += f", viscous {slip.rise:g} s/m"
+        text += f", restitution {contact.restitution:g}"
         if contact.tangential_restitution:
             text += f", tangential {contact.tangential_restitution:g} ({scene.tangential_law})"
         yield f"  contact {first} - {second}: {text}"

@@ -17,6 +17,7 @@ from watchsim.scene.keys import (
     LISTED,
     NAMED,
     NAMED_TABLES,
+    NUMBER_OR_TABLE,
     SECTIONS,
     TABLE,
     TABLES,
@@ -121,6 +122,10 @@ def _inside(key: Key, holder: dict[str, Any], path: tuple[str, ...], steps: tupl
     """The table that the steps lead to from the key at `path` of `holder`, or what is said where there is none."""
     name = path[-1]
     if key.form == TABLE:
+        return holder.setdefault(name, {}), ""
+    if key.form == NUMBER_OR_TABLE:  # a number becomes the required entry of the table
+        if not isinstance(holder.get(name, {}), dict):
+            holder[name] = {next(inner for inner, one in key.inner.items() if one.required): holder[name]}
         return holder.setdefault(name, {}), ""
     if key.form == LAYERS:  # a layer that has none yet gets an empty table
         layers = holder.setdefault(name, {})

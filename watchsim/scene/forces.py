@@ -113,6 +113,22 @@ class Side:
 
 
 @dataclass(frozen=True, slots=True)
+class SlipLaw:
+    """How friction depends on the speed v of slip: friction − drop (1 − exp(−v / decay)) + rise v.
+
+    drop, decay and rise are a number, m/s and s/m; with no decay, friction drops as soon as a contact slides (Stribeck's curve:
+    Armstrong-Hélouvry, Dupont, Canudas de Wit, Automatica 30 (1994)).
+    """
+
+    drop: float = 0.0
+    decay: float = 0.0
+    rise: float = 0.0
+
+
+CONSTANT = SlipLaw()
+
+
+@dataclass(frozen=True, slots=True)
 class Contact:
     """Only what is declared here can touch. Coulomb friction, Poisson restitution normal and tangential."""
 
@@ -120,3 +136,4 @@ class Contact:
     friction: float = 0.0
     restitution: float = 0.0
     tangential_restitution: float = 0.0
+    slip: SlipLaw = CONSTANT

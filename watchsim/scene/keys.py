@@ -31,6 +31,7 @@ FEWEST_TURNS, MOST_TURNS = 1.0, 100.0  # that a picture can show
 LEAST_RATIO = 1e-6  # nearer to 0 it is a slip
 TEXT, TEXTS, FLAG, PAIR, POINTS, VALUE = "text", "list of texts", "true or false", "two values", "list of points", "value"
 VALUES = "a value or a list"
+NUMBER_OR_TABLE = "value or table"
 TABLE, NAMED_TABLES, TABLES_LISTED, LAYERS = "table", "tables by name", "list of tables", "tables by layer"
 
 
@@ -303,10 +304,26 @@ DAMPING: Keys = {
     "coulomb": Key(units.TORQUE, units.FORCE, doc="dry friction in the bearing", limits=_DRIVES),
     "against": _AGAINST,
 }
+_RUBS = _not_negative("a negative friction coefficient would drive the bodies")
+FRICTION: Keys = {
+    "static": _number("coefficient up to which a contact holds without slip", limits=_RUBS, required=True),
+    "sliding": _number("coefficient to which it drops as the contact slides", limits=_RUBS, absent="that of `static`"),
+    "decay": Key(
+        units.SPEED,
+        doc="speed of slip at which all but 1/e of the drop is done",
+        limits=_above_zero("leave it out where friction drops as soon as the contact slides"),
+        absent="friction drops as soon as the contact slides",
+    ),
+    "viscous": Key(
+        units.PER_SPEED,
+        doc="by how much the coefficient grows per speed of slip",
+        limits=_not_negative("friction that falls for ever with speed would drive the bodies"),
+    ),
+}
 CONTACT: Keys = {
     "between": Key(doc="two sides, each a body or BODY.LAYER", form=TEXTS, required=True),
     "friction": _number(
-        "Coulomb's coefficient", limits=_not_negative("a negative friction coefficient would drive the bodies")
+        "Coulomb's coefficient, or a table of it for rest and sliding", limits=_RUBS, form=NUMBER_OR_TABLE, inner=FRICTION
     ),
     "restitution": _number("Poisson's", limits=_REBOUND),
     "tangential_restitution": _number("of the laws `pg1996` and `shifted`", limits=_REBOUND),

@@ -9,8 +9,8 @@ from typing import Any
 
 from watchsim import units
 from watchsim.scene.errors import Faults
-from watchsim.scene.forces import Contact, Side
-from watchsim.scene.keys import CONTACT, nearest
+from watchsim.scene.forces import CONSTANT, Contact, Side, SlipLaw
+from watchsim.scene.keys import CONTACT, FRICTION, nearest
 from watchsim.scene.scene import Body
 from watchsim.scene.values import NAN, Table, listed, shown
 
@@ -125,7 +125,8 @@ def read_contacts(
 
 def _contact(table: Table, known: BodyIndex) -> Contact:
     sides = _sides(table, known)
-    contact = Contact(sides, *(table.quantity(key) for key in ("friction", "restitution", "tangential_restitution")))
+    friction, slip = _friction(table)
+    contact = Contact(sides, friction, table.quantity("restitution"), table.quantity("tangential_restitution"), slip)
     if contact.tangential_restitution > 0.0:
         # Not every law gives tangential impulses back.
         if known.law == "coulomb":
@@ -136,6 +137,23 @@ def _contact(table: Table, known: BodyIndex) -> Contact:
             message = f'must not be above restitution ({contact.restitution:g}) with tangential_law = "shifted"'
             table.fault("tangential_restitution", message, with_value=True)
     return contact
+
+
+def _friction(table: Table) -> tuple[float, SlipLaw]:
+    """The coefficient without slip, and what slip makes of it."""
+    value = table.mapping.get("friction")
+    if not isinstance(value, dict):
+        return table.quantity("friction"), CONSTANT
+    law = Table(value, f"{table.path}.friction", FRICTION, table.faults)
+    law.lacks("friction = { static = 0.18, sliding = 0.12 }")
+    static = law.quantity("static", NAN)
+    sliding = law.quantity("sliding", static)
+    if sliding > static:
+        why = f"must not be above static ({static:g}): a contact that holds no more could not begin to slide either"
+        law.fault("sliding", why, with_value=True)
+    if "decay" in law and "sliding" not in law:
+        law.fault("decay", "is the speed at which friction has dropped from static: write sliding = 0.12, or leave decay out")
+    return static, SlipLaw(static - sliding, law.quantity("decay"), law.quantity("viscous"))
 
 
 def _sides(table: Table, known: BodyIndex) -> tuple[Side, Side]:

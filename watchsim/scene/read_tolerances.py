@@ -21,6 +21,7 @@ from watchsim.geometry.loops import Loop
 from watchsim.geometry.variation import fold, grown
 from watchsim.scene.assign import dimension_of
 from watchsim.scene.errors import Faults
+from watchsim.scene.forces import CONSTANT
 from watchsim.scene.keys import TEETH, TOLERANCE, key_at, nearest
 from watchsim.scene.scene import Correlation, Scene, Tolerance
 from watchsim.scene.values import Table, shown
@@ -375,7 +376,8 @@ def _can_shrink(loop: Loop) -> bool:
 
 def _frictions(scene: Scene) -> list[str]:
     numbers = [i for i, one in enumerate(scene.contacts) if one.friction > FRICTION]
-    return [_line(f"contacts.{i}.friction", f"±{FRICTION:g}", ', group = "oil"') for i in numbers]
+    path = {i: "friction.static" if scene.contacts[i].slip != CONSTANT else "friction" for i in numbers}
+    return [_line(f"contacts.{i}.{path[i]}", f"±{FRICTION:g}", ', group = "oil"') for i in numbers]
 
 
 def _shares(scene: Scene, section: str, key: str) -> list[str]:

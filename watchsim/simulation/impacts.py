@@ -329,7 +329,7 @@ def end_chatter(model, u, m, time, taken, lenience, work, event, room):
         if N <= 0.0:
             continue
         k = closed.ids[i]
-        bound = law_of(model, k).friction * N
+        bound = work.problem.drag[i] * N
         if abs(T) < (1.0 - WITHIN_CONE) * bound:
             room.mode[k] = STICK
         elif bound > 0.0:

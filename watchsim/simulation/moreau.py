@@ -242,12 +242,12 @@ def _free_velocity(model, state, h, work):
 
 
 @kernel
-def _begin_percussions(model, m, h, work):
+def _begin_percussions(model, m, options, h, work):
     """The laws of contacts and bearings in this step, and a first guess; returns the number of bearings."""
     laws, bearings = work.laws, len(work.dry)
     fill_mobility(work, m, bearings)
     rates_of(work, m, bearings, work.free, laws.b)
-    friction_cones(model, m, work)
+    friction_cones(model, m, work.u, options, work)
     for i in range(m):
         # Last step's percussions are a good guess at this one's.
         last = work.memory[work.closed.ids[i]]
@@ -261,14 +261,14 @@ def _begin_percussions(model, m, h, work):
 
 
 @kernel
-def act(model, state, m, h, work, out_u):
+def act(model, state, options, m, h, work, out_u):
     """Velocities at the end of the step: forces, contacts and dry bearings together, without restitution."""
     laws = work.laws
     _free_velocity(model, state, h, work)
     copy(work.free, out_u)
     if m == 0 and len(work.dry) == 0:
         return
-    bearings = _begin_percussions(model, m, h, work)
+    bearings = _begin_percussions(model, m, options, h, work)
     solve_percussions(state, m, bearings, work)
     push(work, m, bearings, laws.P, out_u)
     rates_of(work, m, bearings, work.u, laws.b)
@@ -462,7 +462,7 @@ def _step(model, cells, state, options, h, pace, work, record):
     copy(state.u, work.before)
     copy(state.a, work.bend)
     jump = stop_approaches(model, state, options, m, work, record)
-    act(model, state, m, h, work, state.u)
+    act(model, state, options, m, h, work, state.u)
     copy(state.q, work.start)
     move(model, state, options, m, h, work, state.u)
     for i in range(len(state.u)):

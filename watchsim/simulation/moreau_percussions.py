@@ -19,7 +19,7 @@ from watchsim.dynamics.delassus import (
     drive_through_contacts,
     inverse_mass,
 )
-from watchsim.dynamics.friction import law_of, size_class
+from watchsim.dynamics.friction import friction_at, friction_bound, law_of, size_class
 from watchsim.dynamics.redundant import solve_small
 from watchsim.jit import by_reference, kernel
 from watchsim.model import PG1996, SHIFTED
@@ -271,17 +271,28 @@ def solve_percussions(state, m, bearings, work):
 
 
 @kernel
-def friction_cones(model, m, work):
-    """Coulomb's law for all closed contacts."""
+def friction_cones(model, m, u, options, work):
+    """Coulomb's law for all closed contacts: what slides at velocities u has the coefficient of its slip.
+
+    Where that is less than at rest, friction the other way round, after a reversal, may hold as much as it does at rest.
+    """
     for i in range(m):
+        law, slip, closed = law_of(model, work.closed.ids[i]), 0.0, work.closed
         work.laws.low[i] = 0.0
-        cone(work.laws.ends, i, law_of(model, work.closed.ids[i]).friction)
+        cone(work.laws.ends, i, law.friction)
+        if law.drop == 0.0 and law.rise == 0.0:
+            continue
+        for k in range(closed.slots[i]):
+            slip += closed.w_T[i, k] * u[closed.coord[i, k]]
+        if slip > options.speed_zero:
+            work.laws.ends[i, 1] = -friction_at(law, slip)
+        elif slip < -options.speed_zero:
+            work.laws.ends[i, 3] = friction_at(law, -slip)
 
 
 @kernel
-def _expansion_ends(law, share, N, T, ends, i):
+def _expansion_ends(law, mu, share, N, T, ends, i):
     """Where the tangential percussion of the expansion may lie after the compression (N, T); returns what is given back."""
-    mu = law.friction
     if law.kind == SHIFTED:
         back = min(law.tangential, share)
         ends[i, 0], ends[i, 1] = back * (T + mu * N), -mu
@@ -304,17 +315,19 @@ def _expansion_ends(law, share, N, T, ends, i):
 def _compress(model, state, m, work):
     """Percussions that stop the approach into `work.more`; rates before are in `work.rates`."""
     laws = work.laws
-    friction_cones(model, m, work)
+    for i in range(m):
+        laws.low[i] = 0.0
+        cone(laws.ends, i, friction_bound(law_of(model, work.closed.ids[i]), work.rates[2 * i + 1]))
     for row in range(2 * m):
         laws.b[row], laws.P[row] = work.rates[row], 0.0
-    _keep_sliding(model, m, work)
+    _keep_sliding(m, work)
     solve_percussions(state, m, 0, work)
     for row in range(2 * m):
         work.more[row] = laws.P[row]
 
 
 @kernel
-def _keep_sliding(model, m, work):
+def _keep_sliding(m, work):
     """Where slip and approach stop together, their directions being parallel, friction is what it was while they lasted.
 
     Against a driven body slip is left when approach has stopped, and Coulomb's law says which way friction acts.
@@ -325,7 +338,7 @@ def _keep_sliding(model, m, work):
         if slip == 0.0 or laws.G[N, T] ** 2 <= (1.0 - PARALLEL) * laws.G[N, N] * laws.G[T, T]:
             continue
         if abs(slip - laws.G[N, T] / laws.G[N, N] * work.rates[N]) <= NUDGE * abs(slip):
-            one_way = -law_of(model, work.closed.ids[i]).friction if slip > 0.0 else law_of(model, work.closed.ids[i]).friction
+            one_way = laws.ends[i, 1] if slip > 0.0 else laws.ends[i, 3]
             laws.ends[i, 1], laws.ends[i, 3] = one_way, one_way
 
 
@@ -340,7 +353,8 @@ def _expand(model, state, m, work):
     for i in range(m):
         N, T, law = work.more[2 * i], work.more[2 * i + 1], law_of(model, work.closed.ids[i])
         laws.low[i] = work.restitution[i] * N
-        returned = law.nu * _expansion_ends(law, work.restitution[i], N, T, laws.ends, i)
+        mu = friction_bound(law, work.rates[2 * i + 1])
+        returned = law.nu * _expansion_ends(law, mu, work.restitution[i], N, T, laws.ends, i)
         laws.P[2 * i], laws.P[2 * i + 1] = laws.low[i], 0.0
         if returned != 0.0:
             # Friction of pg1996 changes sides at the slip that nu of what is returned would make.

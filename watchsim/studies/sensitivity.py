@@ -37,7 +37,8 @@ OF_DESIGN = {"embraced", "start"}  # a whole number and a half; where the balanc
 RELATIVE = 1e-3  # of a value: the larger of the two steps
 SHORT, SLIGHT, SMALL = 5e-7, 2e-4, 1e-4  # steps of lengths (m), angles (rad) and of numbers that are zero
 PERCENT, USUAL_LENGTH, USUAL_ANGLE = 0.01, 1e-5, 0.1  # what is compared: 1 %, 10 µm, 0.1°
-BOUNDED = {"friction": (0.0, None), "restitution": (0.0, 1.0), "tangential_restitution": (0.0, 1.0), "coulomb": (0.0, None)}
+BOUNDED: dict[str, tuple[float | None, float | None]] = dict.fromkeys(("friction", "static", "sliding", "coulomb"), (0.0, None))
+BOUNDED |= dict.fromkeys(("restitution", "tangential_restitution"), (0.0, 1.0))
 
 
 @dataclass(frozen=True)
