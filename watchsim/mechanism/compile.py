@@ -149,6 +149,10 @@ def forced_coordinates(
         for law, power in DAMPING_LAWS.items():
             row[law] += ratio ** (power + 1) * getattr(damping, law)
         row.coulomb += ratio * damping.coulomb
+    masses_of = {body.name: load.mass for body, load in zip(scene.bodies, weighed, strict=True)}
+    for bearing in scene.bearings:
+        torque = bearing.torque(masses_of[bearing.body], scene.gravity)
+        targets.row(bearing.body).coulomb += abs(targets.ratio(bearing.body)) * torque
     tables, knots = _tables(scene, targets)
     joints = targets.joints
     if joints.coulomb.any():

@@ -99,6 +99,11 @@ def _force_lines(scene: Scene) -> Iterator[str]:
         yield f"  drive on {_ends(torque.body, torque.against)}: {text}"
     for damping in scene.damping:
         yield f"  damping on {_ends(damping.body, damping.against)}: {_damping(scene, damping)}"
+    masses = {body.name: load.mass for body, load in zip(scene.bodies, loads(scene.bodies)[1], strict=True)}
+    for bearing in scene.bearings:
+        friction = metric(bearing.torque(masses[bearing.body], scene.gravity), "N·m", 4)
+        radii = f"radius {metric(bearing.radius, 'm')}" + (f", flat {metric(bearing.flat, 'm')}" if bearing.flat else "")
+        yield f"  bearing of {bearing.body}: {radii}, friction {bearing.friction:g}, dry friction {friction} under its weight"
 
 
 def _line_spring(spring: LineSpring) -> str:

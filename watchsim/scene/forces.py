@@ -6,6 +6,7 @@ act between two bodies, on the one and back on the other; angles, travels and sp
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -112,6 +113,28 @@ class Side:
         return self.body if self.layer is None else f"{self.body}.{self.layer}"
 
 
+G = 9.80665  # m/s² (3rd CGPM, 1901)
+
+
+@dataclass(frozen=True, slots=True)
+class Bearing:
+    """Friction of a pivot under the weight of its body: friction × load × radius (m), `flat` on the cap stone."""
+
+    body: str
+    radius: float
+    friction: float
+    flat: float = 0.0
+
+    def torque(self, mass: float, gravity: Point) -> float:
+        """Of dry friction, N·m, with a body of that mass (kg) in that gravity (m/s²) in the plane.
+
+        What standard gravity has beside that presses the end of the pivot on its stone.
+        """
+        upright = math.hypot(*gravity)
+        lying = math.sqrt(max(0.0, G * G - upright * upright))
+        return self.friction * mass * (self.radius * upright + self.flat * lying)
+
+
 @dataclass(frozen=True, slots=True)
 class SlipLaw:
     """How friction depends on the speed v of slip: friction − drop (1 − exp(−v / decay)) + rise v.
@@ -123,6 +146,10 @@ class SlipLaw:
     drop: float = 0.0
     decay: float = 0.0
     rise: float = 0.0
+
+    def times(self, factor: float) -> SlipLaw:
+        """Of a coefficient that is so many times as large at every speed."""
+        return SlipLaw(self.drop * factor, self.decay, self.rise * factor)
 
 
 CONSTANT = SlipLaw()

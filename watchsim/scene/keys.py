@@ -328,6 +328,15 @@ CONTACT: Keys = {
     "restitution": _number("Poisson's", limits=_REBOUND),
     "tangential_restitution": _number("of the laws `pg1996` and `shifted`", limits=_REBOUND),
 }
+BEARING: Keys = {
+    "body": _BODY,
+    "radius": _length("of the pivot", limits=_above_zero("it is the radius of the pivot"), required=True),
+    "friction": _number("coefficient between pivot and hole", limits=_RUBS, required=True),
+    "flat": _length(
+        "equivalent radius of the end of the pivot on its cap stone, which carries the weight of a body that lies flat",
+        limits=_not_negative(),
+    ),
+}
 GEAR: Keys = {
     "between": Key(doc="two bodies", form=TEXTS, required=True),
     "ratio": _number("how far the second goes for one unit of the first", required=True),
@@ -456,6 +465,7 @@ LISTED = {  # [[name]]
     "springs": SPRING,
     "torques": TORQUE,
     "damping": DAMPING,
+    "bearings": BEARING,
     "contacts": CONTACT,
     "gears": GEAR,
     "line_springs": LINE_SPRING,

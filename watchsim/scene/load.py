@@ -19,7 +19,7 @@ from watchsim.scene.errors import Fault, Faults, SceneError
 from watchsim.scene.keys import LISTED, LOCK, SECTIONS
 from watchsim.scene.read_bodies import read_bodies
 from watchsim.scene.read_contacts import read_contacts
-from watchsim.scene.read_forces import read_damping, read_line_springs, read_springs, read_torques
+from watchsim.scene.read_forces import read_bearings, read_damping, read_line_springs, read_springs, read_torques
 from watchsim.scene.read_settings import read_expectations, read_heading, read_run, read_timegrapher
 from watchsim.scene.read_tolerances import read_tolerances
 from watchsim.scene.read_trains import note_carriers, read_gears, with_trains
@@ -65,6 +65,7 @@ def from_mapping(
     springs = read_springs(mapping, bodies, faults)
     torques = read_torques(mapping, bodies, faults)
     damping = read_damping(mapping, bodies, springs, heading.gravity, faults)
+    bearings = read_bearings(mapping, bodies, faults)
     contacts = read_contacts(mapping, bodies, sound, heading.tangential_law, faults)
     line_springs = read_line_springs(mapping, bodies, faults)
     note_carriers(bodies, damping, contacts, faults)
@@ -79,6 +80,7 @@ def from_mapping(
         springs=springs,
         torques=torques,
         damping=damping,
+        bearings=bearings,
         contacts=contacts,
         gears=geared.gears,
         rigid_gears=geared.rigid,

@@ -12,8 +12,20 @@ from watchsim.geometry.hairspring import Coil
 from watchsim.geometry.primitives import Point
 from watchsim.model import DAMPING_LAWS
 from watchsim.scene.errors import Faults
-from watchsim.scene.forces import Damping, LineSpring, Spring, Torque
-from watchsim.scene.keys import COIL, DAMPING, FEWEST_TURNS, LEAF, LINE_SPRING, MOST_TURNS, SPRING, TORQUE, Keys, nearest
+from watchsim.scene.forces import Bearing, Damping, LineSpring, Spring, Torque
+from watchsim.scene.keys import (
+    BEARING,
+    COIL,
+    DAMPING,
+    FEWEST_TURNS,
+    LEAF,
+    LINE_SPRING,
+    MOST_TURNS,
+    SPRING,
+    TORQUE,
+    Keys,
+    nearest,
+)
 from watchsim.scene.read_contacts import read_against, repeated, rows_of
 from watchsim.scene.read_trains import BARREL, KEYS, mainspring_torque
 from watchsim.scene.roles import Oscillator, loads, oscillator
@@ -251,6 +263,22 @@ def read_damping(
         swinging = oscillator(bodies, springs, gravity, entry.name) if "q_factor" in entry.table else None
         found.append(_damping(entry, swinging, lost))
     return tuple(found)
+
+
+def read_bearings(mapping: Mapping[str, Any], bodies: tuple[Body, ...], faults: Faults) -> tuple[Bearing, ...]:
+    """Pivots whose friction goes with the weight that they carry."""
+    return tuple(_bearing(entry) for entry in _entries(mapping, "bearings", BEARING, bodies, faults))
+
+
+def _bearing(entry: Entry) -> Bearing:
+    table, body = entry.table, entry.body
+    table.lacks('body = "balance", radius = "0.05 mm", friction = 0.12')
+    if body is not None and (body.motion != "pivot" or body.on is not None or body.prescribed is not None):
+        table.fault("body", "a bearing with a load is that of a body that turns about a pivot of the movement", with_value=True)
+    elif body is not None and body.mass == 0.0:
+        why = f"{body.name} has no weight: give it a mass or solids, or write coulomb under [[damping]]"
+        table.fault("body", why, with_value=True)
+    return Bearing(entry.name, table.quantity("radius", NAN), table.quantity("friction", NAN), table.quantity("flat"))
 
 
 def _entries(mapping: Mapping[str, Any], section: str, keys: Keys, bodies: tuple[Body, ...], faults: Faults) -> Iterator[Entry]:

@@ -17,13 +17,12 @@ import numpy as np
 
 from watchsim.geometry.primitives import Point
 from watchsim.scene.errors import Faults
-from watchsim.scene.forces import Torque
+from watchsim.scene.forces import G, Torque
 from watchsim.scene.keys import AT_HOME, THERMAL, WATCH
 from watchsim.scene.roles import nominal_frequency, pitch, roles
 from watchsim.scene.scene import Scene
 from watchsim.scene.values import Table, shown
 
-G = 9.80665  # m/s², standard gravity (3rd CGPM, 1901)
 LYING = ("CH", "CB")  # dial up (cadran en haut), dial down
 UPRIGHT = ("12H", "3H", "6H", "9H")
 HOUR = re.compile(r"(\d{1,2})H([0-5]\d)?")
@@ -106,7 +105,8 @@ def _warmed(scene: Scene, by: Mapping[str, float]) -> Scene:
             replace(one, viscous=one.viscous * damping, quadratic=one.quadratic * damping, coulomb=one.coulomb * friction)
             for one in scene.damping
         ),
-        contacts=tuple(replace(one, friction=one.friction * friction) for one in scene.contacts),
+        bearings=tuple(replace(one, friction=one.friction * friction) for one in scene.bearings),
+        contacts=tuple(replace(one, friction=one.friction * friction, slip=one.slip.times(friction)) for one in scene.contacts),
     )
 
 

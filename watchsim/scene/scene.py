@@ -17,7 +17,7 @@ from watchsim.drawing.findings import Finding
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Point
 from watchsim.scene.errors import Fault, SceneError
-from watchsim.scene.forces import Contact, Damping, LineSpring, Spring, Torque
+from watchsim.scene.forces import Bearing, Contact, Damping, LineSpring, Spring, Torque
 from watchsim.scene.solids import Solid
 from watchsim.units import LENGTH, Dimension, known_unit, show
 
@@ -319,7 +319,7 @@ class Written:
 class Scene:
     """A mechanism in SI units, ready to be compiled. Two scenes are equal when all but the last eight fields are.
 
-    bodies, springs, torques, damping, contacts  what it consists of
+    bodies, springs, torques, damping, bearings, contacts  what it consists of
     gravity         (x, y), m/s²
     tangential_law  "coulomb", "pg1996" or "shifted": what friction does in the expansion of impacts; `nu` belongs to pg1996
                     (docs/theory/laws.md)
@@ -353,6 +353,7 @@ class Scene:
     gears: tuple[Gear, ...] = ()
     rigid_gears: tuple[Gear, ...] = ()
     line_springs: tuple[LineSpring, ...] = ()
+    bearings: tuple[Bearing, ...] = ()
     tolerances: tuple[Tolerance, ...] = field(default=(), compare=False)
     correlated: tuple[Correlation, ...] = field(default=(), compare=False)
     path: Path | None = field(default=None, compare=False)

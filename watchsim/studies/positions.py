@@ -18,8 +18,9 @@ import numpy as np
 
 from watchsim.analysis.timing import DAY
 from watchsim.scene.errors import Fault, SceneError
+from watchsim.scene.forces import G
 from watchsim.scene.keys import AT_HOME
-from watchsim.scene.read_watch import LYING, G, up_of
+from watchsim.scene.read_watch import LYING, up_of
 from watchsim.scene.roles import loads, oscillators
 from watchsim.scene.scene import Scene
 from watchsim.studies.axes import axes_from_values
