@@ -21,6 +21,7 @@ from watchsim.scene.keys import (
     LAYERS,
     LISTED,
     NAMED_TABLES,
+    NUMBER_OR_TABLE,
     PAIR,
     POINTS,
     SECTIONS,
@@ -111,6 +112,8 @@ def _value(name: str, key: Key) -> Schema:
 def _inner(name: str, key: Key) -> Schema:
     table = _table(key.inner, name)
     listed = {"type": "array", "items": table}
+    if key.form == NUMBER_OR_TABLE:
+        return _either([_form(name, key), table])
     if key.form == LAYERS:
         return {"type": "object", "additionalProperties": {"anyOf": [table, listed]}}
     named = {"type": "object", "additionalProperties": table}
