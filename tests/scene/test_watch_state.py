@@ -31,6 +31,10 @@ body = "balance"
 body = "balance"
 q_factor = 250
 coulomb = "1 nN·m"
+[[bearings]]
+body = "balance"
+radius = "0.05 mm"
+friction = 0.2
 """
 BARREL = """
 [[torques]]
@@ -82,6 +86,7 @@ def test_warmth_changes_what_it_says_and_the_rate_stays_against_the_train(spring
     assert after.inertia / before.inertia == pytest.approx(math.exp(22e-6 * 15), rel=1e-14)
     assert warm.damping[0].viscous / home.damping[0].viscous == pytest.approx(math.exp(-0.02 * 15), rel=1e-14)
     assert warm.damping[0].coulomb / home.damping[0].coulomb == pytest.approx(math.exp(-0.005 * 15), rel=1e-14)
+    assert warm.bearings[0].friction / home.bearings[0].friction == pytest.approx(math.exp(-0.005 * 15), rel=1e-14)
     assert nominal_frequency(warm) == nominal_frequency(home)
     assert after.hertz is not None and before.hertz is not None
     assert after.hertz / before.hertz == pytest.approx(math.exp(-25e-6 * 15), rel=1e-12)
