@@ -176,6 +176,10 @@ def start_from_drawings(names: Sequence[str], output: str | None, as_json: bool,
         print(f"  {role.name}: {role.why}")
     for first, second in found.contacts:
         print(f"  {first} can meet {second}")
+    for words in found.left_out:
+        say(f"Left out: {words}")
+    for words in found.doubts:
+        say(f"Doubtful: {words}.")
     say(f"{len(found.guesses)} guesses, each with its reason in {folder / 'scene.toml'}.")
     say(f"watchsim check {folder} --png start.png shows the start; watchsim run {folder} simulates it.")
 
@@ -199,6 +203,7 @@ def as_mapping(found: Proposal, folder: Path) -> dict[str, object]:
         "contacts": [list(pair) for pair in found.contacts],
         "guesses": [{"key": guess.key, "value": guess.value, "why": guess.why} for guess in found.guesses],
         "left_out": list(found.left_out),
+        "doubts": list(found.doubts),
     }
 
 

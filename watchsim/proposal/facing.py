@@ -46,6 +46,7 @@ class Facing:
     why: str
     overlap: float = 0.0
     by_name: bool = False
+    by_name_alone: bool = False  # the drawing does not show that they meet
 
     @property
     def sides(self) -> tuple[tuple[Role, str], tuple[Role, str]]:
@@ -84,7 +85,9 @@ def named_facings(roles: Sequence[Role]) -> list[Facing]:
             if {one.task, other.task} == {LEVER, FIXED}:
                 arm = max(one.part.pieces if one.task == LEVER else other.part.pieces, key=lambda piece: piece.area).layer
                 named = [pair for pair in pairs if arm in pair]
-            found += [Facing(one, a, other, b, "by their names alone", by_name=True) for a, b in named]
+            elif len(pairs) == 1 and FIXED not in {one.task, other.task}:
+                named = pairs
+            found += [Facing(one, a, other, b, "by their names alone", by_name=True, by_name_alone=True) for a, b in named]
     return found
 
 

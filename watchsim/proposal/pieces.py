@@ -21,11 +21,11 @@ from numpy.typing import NDArray
 
 from watchsim.drawing.circles import circle_of
 from watchsim.drawing.drawing import SNAP, Drawing
-from watchsim.drawing.findings import Content, Inserted, Stroke
+from watchsim.drawing.findings import Content, Finding, Inserted, Stroke
 from watchsim.drawing.material import MARKS, last_word
 from watchsim.drawing.read import FIT, assembled, read_content
 from watchsim.geometry.loops import Loop, extents, winding
-from watchsim.geometry.primitives import Arc, Point
+from watchsim.geometry.primitives import Arc, Line, Point
 from watchsim.geometry.solids import area, section
 from watchsim.mechanism.overlap import chord_points, material, placed
 
@@ -52,6 +52,7 @@ class Source:
     units: str | None
     blocks: dict[str, str]
     marks: tuple[Mark, ...]
+    mended: tuple[str, ...] = ()  # what was closed so that its layer can be used
 
     @property
     def bad_layers(self) -> frozenset[str]:
@@ -79,8 +80,56 @@ def read_source(path: Path) -> Source:
     blocks: dict[str, str] = {}
     if len(content.inserted) > 1:
         content, blocks = _by_blocks(content)
-    drawing = assembled(path, ending, lambda: content, SNAP)
-    return Source(path, drawing, units, blocks, tuple(_marks(drawing)))
+    drawing, mended = _mended(assembled(path, ending, lambda: content, SNAP))
+    return Source(path, drawing, units, blocks, tuple(_marks(drawing)), tuple(mended))
+
+
+OPEN = "open-outline"  # the code of a finding
+GAP = 0.05  # of what is drawn: an outline with a wider one is none
+
+
+def _mended(drawing: Drawing) -> tuple[Drawing, list[str]]:
+    """The drawing with open windows of its parts closed by a straight line, and which: nothing can touch them there.
+
+    A gap in an outer outline may lie where something touches it, and stays a fault.
+    """
+    gaps = [(f, chain) for f in drawing.findings if f.code == OPEN and (chain := _chain_at(drawing, f)) is not None]
+    closed: dict[int, Loop] = {}
+    said: list[str] = []
+    kept = list(drawing.findings)
+    for finding, chain in gaps:
+        start, end = chain.edges[0].start, chain.edges[-1].end
+        around = [loop for loop in drawing.loops if loop.layer == chain.layer and not loop.hole]
+        probes = [edge.point(share) for edge in chain.edges for share in (0.0, 0.5, 1.0)]
+        within = any(all(winding(loop, probe) != 0 for probe in probes) for loop in around)
+        if not within or math.dist(start, end) > GAP * chain.length:
+            continue
+        whole = Loop((*chain.edges, Line(*end, *start)), chain.layer)
+        closed[id(chain)] = replace(whole if area(whole) < 0.0 else whole.reversed(), hole=True)
+        kept.remove(finding)
+        x, y = (1e3 * value for value in start)
+        gap = f"open by {1e6 * math.dist(start, end):.3g} µm at ({x:.4g}, {y:.4g}) mm"
+        said.append(
+            f"an outline inside a part on layer {chain.layer} is {gap}; nothing touches it there, and it was closed by a "
+            "straight line"
+        )
+    chains = tuple(chain for chain in drawing.open_chains if id(chain) not in closed)
+    loops = (*drawing.loops, *closed.values())
+    return (replace(drawing, loops=loops, open_chains=chains, findings=tuple(kept)) if closed else drawing), said
+
+
+def _chain_at(drawing: Drawing, finding: Finding) -> Loop | None:
+    """The open chain both ends of which a finding names."""
+    if finding.x_mm is None or finding.y_mm is None or finding.other_mm is None:
+        return None
+    places = [(1e-3 * finding.x_mm, 1e-3 * finding.y_mm), (1e-3 * finding.other_mm[0], 1e-3 * finding.other_mm[1])]
+    for chain in drawing.open_chains:
+        ends = chain.edges[0].start, chain.edges[-1].end
+        near = (math.dist(one, other) <= SNAP for way in (ends, ends[::-1]) for one, other in zip(way, places, strict=True))
+        first, second, third, fourth = near
+        if chain.layer == finding.layer and ((first and second) or (third and fourth)):
+            return chain
+    return None
 
 
 def _likely_unit(content: Content) -> str:

@@ -15,6 +15,7 @@ from typing import Any
 
 from watchsim.drawing.drawing import Drawing
 from watchsim.mechanism.overlap import overlaps
+from watchsim.proposal.doubts import doubts
 from watchsim.proposal.facing import Facing, facings, named_facings
 from watchsim.proposal.parts import parts_of
 from watchsim.proposal.pieces import CLICK, OSCILLATOR, WHEEL, Piece, Source, is_mark, pieces_of, read_source, size_of
@@ -61,6 +62,7 @@ class Plan:
     direction: int
     direction_why: str
     left_out: Sequence[str] = ()
+    doubts: Sequence[str] = ()
     guesses: list[Guess] = field(default_factory=list)
 
     def side(self, role: Role, layer: str) -> str:
@@ -86,6 +88,7 @@ def scene_text(plan: Plan) -> str:
         f"# Proposed from {names}. What is a guess says so, and why: put right what you know better, then",
         "# `watchsim check`, `watchsim check --png start.png` and `watchsim run` say what comes of it.",
         *(f"# Left out: {words}" for words in plan.left_out),
+        *(f"# Doubtful: {words}." for words in plan.doubts),
         "",
         "[scene]",
         f"title  = {_text(plan.title)}",
@@ -99,6 +102,10 @@ def scene_text(plan: Plan) -> str:
     if plan.others:
         lines += ["", "# Not taken for contacts, though they come near:"]
         lines += [f"# {_sides(plan, facing)}: {why}" for facing, why in plan.others]
+    if plan.amounts.lift is not None:
+        lift = plan.amounts.lift
+        lines += ["", "[timegrapher]"]
+        lines += [plan.guess("timegrapher.lift_angle", _text(f"{math.degrees(lift.value):.3g}°"), lift.why)]
     lines += ["", "[run]", plan.guess("run.duration", _text(DURATION), "long enough to see whether it works")]
     return "\n".join(lines) + "\n"
 
@@ -230,13 +237,17 @@ class NothingToPropose(ValueError):
 
 @dataclass(frozen=True)
 class Proposal:
-    """Files of the scene by name, and what was guessed. `roles` and `contacts` are in the order of the scene."""
+    """Files of the scene by name, and what was guessed. `roles` and `contacts` are in the order of the scene.
+
+    `doubts` are sentences on what cannot be true as it is proposed, or was mended.
+    """
 
     files: dict[str, bytes]
     guesses: tuple[Guess, ...]
     roles: tuple[Role, ...]
     contacts: tuple[tuple[str, str], ...]
     left_out: tuple[str, ...]
+    doubts: tuple[str, ...] = ()
 
 
 def propose(paths: Sequence[Path]) -> Proposal:
@@ -252,6 +263,7 @@ def propose(paths: Sequence[Path]) -> Proposal:
     size = size_of([source.drawing for source in sources])
     places = side_by_side(roles, len(sources))
     met, others = (named_facings(roles), []) if places else facings(roles, size)
+    met = met or named_facings(roles)  # of a layout for cutting
     unlikely = [(facing, "the names of other surfaces of these bodies fit better") for facing in others]
     lean, why = _direction(first_of(roles, WHEEL), {role.task for role in roles})
     start = start_of(roles, () if places else met, lean or -1)
@@ -259,7 +271,9 @@ def propose(paths: Sequence[Path]) -> Proposal:
     title = ", ".join(path.stem for path in paths)
     copies = drawn(sources, roles)
     plan = Plan(title, sources, copies, roles, met, unlikely, start, amounts, places, lean or -1, why, left_out)
+    mended = [words for source in sources for words in source.mended]
     while True:
+        plan.doubts = [*doubts(roles, plan.facings, bool(places), bool(lean)), *mended]
         files = {drawing.name: drawing.data for drawing in plan.drawn}
         files[SCENE] = scene_text(plan).encode()
         wrong = _overlapping(files)
@@ -269,7 +283,7 @@ def propose(paths: Sequence[Path]) -> Proposal:
         gone = [(facing, "they overlap at the start") for k, facing in enumerate(plan.facings) if k in wrong]
         plan = replace(plan, facings=kept, others=[*plan.others, *gone], guesses=[])
     sides = tuple((plan.side(*facing.sides[0]), plan.side(*facing.sides[1])) for facing in plan.facings)
-    return Proposal(files, tuple(plan.guesses), tuple(roles), sides, tuple(left_out))
+    return Proposal(files, tuple(plan.guesses), tuple(roles), sides, tuple(left_out), tuple(plan.doubts))
 
 
 def _pieces(sources: Sequence[Source]) -> tuple[list[Piece], list[str]]:

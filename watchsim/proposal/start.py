@@ -18,9 +18,10 @@ import numpy as np
 from watchsim.drawing.write import dxf_text
 from watchsim.geometry.primitives import Point
 from watchsim.geometry.solids import section
+from watchsim.mechanism.overlap import placed
 from watchsim.proposal.facing import Facing, clearance, ring, turns_fully
 from watchsim.proposal.parts import Part, nose_of, toothing
-from watchsim.proposal.pieces import CLICK, DRIVER, LEVER, OSCILLATOR, WHEEL, Piece, Source, tokens
+from watchsim.proposal.pieces import CLICK, DRIVER, LEVER, OSCILLATOR, WHEEL, Floats, Piece, Source, tokens
 from watchsim.proposal.roles import Role, first_of, plain
 
 STEEL = 7850.0  # kg/m³
@@ -64,6 +65,7 @@ class Amounts:
     viscous: Amount | None
     driven: str | None  # the body that the torque turns
     clicks: tuple[ClickSpring, ...] = ()
+    lift: Amount | None = None  # rad: the oscillator's way between the sounds from which its amplitude follows
     turned: str | None = None  # the body that turns evenly, as a finger does that moves a star on against its jumper
 
 
@@ -84,8 +86,8 @@ def amounts_of(roles: Sequence[Role], size: float, swing: float) -> Amounts:
         slow = Amount(torque.value / (2.0 * math.pi * TURNS), f"so that {driven} comes to about {TURNS:g} turn per second")
         springs = _clicks(roles, wheel, torque.value)
         if driven is None:
-            return Amounts(inertia, None, None, None, None, None, springs, turned)
-        return Amounts(inertia, None, None, torque, slow, driven, springs, turned)
+            return Amounts(inertia, None, None, None, None, None, springs, turned=turned)
+        return Amounts(inertia, None, None, torque, slow, driven, springs, turned=turned)
     beats = Amount(BEATS[watch], f"usual for {'a watch' if watch else 'a clock'} of this size ({1e3 * size:.3g} mm)")
     q = Amount(Q_FACTOR[watch], "usual; the escapement's own losses come on top")
     torque_amount = None
@@ -95,7 +97,39 @@ def amounts_of(roles: Sequence[Role], size: float, swing: float) -> Amounts:
         value = loss / (SHARE * 2.0 * math.pi / wheel.teeth)
         why = f"it makes up for what the {swinging.name} loses at {math.degrees(swing):.3g}°, {SHARE:.0%} of it reaching it"
         torque_amount = Amount(value, why)
-    return Amounts(inertia, beats, q, torque_amount, None, driven)
+    lift = _lift(swinging, wheel) if wheel is not None and lever is None else None
+    return Amounts(inertia, beats, q, torque_amount, None, driven, lift=lift)
+
+
+FULL_LIFT = math.radians(40.0)  # of a balance that the wheel drives itself: cylinder 40°, duplex and detent more
+USUAL_LIFT = math.radians(4.0)  # of an anchor
+LIFTS = np.radians(np.arange(0.0, 20.0, 0.05)).tolist()
+
+
+def _lift(swinging: Role, wheel: Role) -> Amount:
+    """From where one pallet lets go of the teeth to where the other does."""
+    if not swinging.little:
+        return Amount(FULL_LIFT, "usual for a cylinder; the drawing does not say where the impulse begins and ends")
+    teeth, centre = toothing(wheel.part), swinging.part.centre
+    usual = Amount(USUAL_LIFT, "usual; the drawing does not show two pallets in the teeth")
+    if teeth is None or centre is None:
+        return usual
+    at, axis = np.array(centre.at), np.array(teeth.centre) - np.array(centre.at)
+    points = np.concatenate([piece.points for piece in swinging.part.pieces]) - at
+    side = np.sign(axis[0] * points[:, 1] - axis[1] * points[:, 0])
+    released = []
+    for pallet in (points[side > 0.0], points[side < 0.0]):
+        inward = pallet[np.hypot(*(pallet - axis).T) < 1.5 * teeth.outer]
+        clear = (way for angle in LIFTS for way in (angle, -angle) if _is_clear(inward, axis, way, teeth.outer))
+        released.append(next(clear, None) if len(inward) else None)
+    if released[0] is None or released[1] is None or not 0.0 < abs(released[0] - released[1]) < 0.5:
+        return usual
+    return Amount(abs(released[0] - released[1]), "from where one pallet lets go of the teeth to where the other does")
+
+
+def _is_clear(points: Floats, wheel: Floats, angle: float, outer: float) -> bool:
+    """Do points about a pivot, turned, lie outside the circle of the tips about `wheel`?"""
+    return bool(np.hypot(*(placed(points, (0.0, 0.0, angle)) - wheel).T).min() >= outer)
 
 
 def _clicks(roles: Sequence[Role], wheel: Role | None, torque: float) -> tuple[ClickSpring, ...]:
@@ -262,7 +296,7 @@ def drawn(sources: Sequence[Source], roles: Sequence[Role]) -> list[Drawn]:
     for number, source in enumerate(sources):
         own = [role for role in roles if role.part.file == number]
         prefix = f"{number + 1}_" if stems[source.path.name.casefold()] > 1 else ""
-        if source.blocks or any(plain(layer)[1] for role in own for layer in role.part.layers):
+        if source.blocks or source.mended or any(plain(layer)[1] for role in own for layer in role.part.layers):
             found.append(_sorted(f"{prefix}{source.path.stem}_sorted.dxf", own))
         else:
             layers = {(role.name, layer): layer for role in own for layer in role.part.layers}

@@ -1,0 +1,112 @@
+"""What cannot be true as proposed is said aloud, and a run of it does not pass for a watch."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import ezdxf
+import pytest
+from proposal.assemblies import assembly, scene_of
+
+from watchsim.cli import main
+from watchsim.proposal.propose import propose
+from watchsim.scene.load import load
+
+Corners = list[tuple[float, float]]
+
+
+def ratchet(teeth: int, lean: float = 0.84) -> Corners:
+    return [
+        (r * math.cos(angle), r * math.sin(angle))
+        for k in range(teeth)
+        for r, angle in ((4.0, math.tau * k / teeth), (5.0, math.tau * (k + lean) / teeth))
+    ]
+
+
+def drawing(path: Path, **layers: list[Corners | tuple[float, float, float]]) -> Path:
+    """Closed outlines, open ones (whose last corner is None), and circles (x, y, r), by layer."""
+    document = ezdxf.new("R2010", units=ezdxf.units.MM)
+    for layer, shapes in layers.items():
+        for shape in shapes:
+            if isinstance(shape, tuple):
+                document.modelspace().add_circle(shape[:2], shape[2], dxfattribs={"layer": layer})
+            else:
+                closed = math.dist(shape[0], shape[-1]) > 0.2
+                document.modelspace().add_lwpolyline(shape, close=closed, dxfattribs={"layer": layer})
+    document.saveas(path)
+    return path
+
+
+ANCHOR: Corners = [(17.0, 0.0), (20.0, 3.0), (23.0, 0.0), (22.5, 0.0), (20.0, 2.0), (17.5, 0.0)]
+
+
+def test_a_layout_for_cutting_is_said_to_be_one(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Its contacts are declared, so that a run says that they never engage, and gives no rate."""
+    path = drawing(tmp_path / "cut.dxf", WHEEL=[ratchet(15), (0.0, 0.0, 0.5)], ANCHOR=[ANCHOR, (20.0, 2.5, 0.2)])
+    assert main(["new", str(path), "-o", str(tmp_path / "out")]) == 0
+    assert "never come within reach of each other, as in a layout for cutting" in capsys.readouterr().err
+    assert load(tmp_path / "out").contacts
+    assert main(["run", str(tmp_path / "out"), "--duration", "1 s", "-o", str(tmp_path / "run")]) == 1
+    said = capsys.readouterr().out
+    assert "s/d" not in said and "wheel never touched anything" in said
+
+
+def test_an_assembly_raises_no_doubt(tmp_path: Path) -> None:
+    for name in ("swiss_lever", "graham", "ratchet", "jumper"):
+        assert propose([assembly(scene_of(name), tmp_path / f"{name}.dxf", "body")]).doubts == ()
+
+
+WINDOW: Corners = [(1.2, 0.2), (3.0, 0.4), (2.0, 2.0), (1.22, 0.25)]  # 54 µm open
+
+
+def test_a_gap_in_a_window_does_not_cost_the_wheel(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Nothing touches it there: closed, and said so. A lever whose own outline is open is left out, and said so, too."""
+    lever: Corners = [(8.0, -1.0), (10.0, -1.0), (10.0, 1.0), (8.0, 1.0), (8.0, -0.9)]
+    path = drawing(tmp_path / "gap.dxf", WHEEL=[ratchet(15), WINDOW, (0.0, 0.0, 0.5)], LEVER=[lever, (9.0, 0.0, 0.2)])
+    assert main(["new", str(path), "-o", str(tmp_path / "out"), "--json"]) == 0
+    said = json.loads(capsys.readouterr().out)
+    assert [body["teeth"] for body in said["bodies"]] == [15]
+    assert any("open by 53.9 µm" in words for words in said["doubts"])
+    assert any("layer LEVER" in words and "100 µm" in words for words in said["left_out"])
+    wheel = load(tmp_path / "out").body("wheel")
+    assert sum(loop.hole for loop in wheel.loops) == 2  # bore and window
+    assert main(["new", str(path), "-o", str(tmp_path / "out"), "--force"]) == 0
+    err = capsys.readouterr().err
+    assert "Left out: layer LEVER" in err and "Doubtful: an outline inside a part" in err
+
+
+def test_a_wheel_and_its_mirror_image_are_driven_opposite_ways(tmp_path: Path) -> None:
+    """By their teeth, also where there are many of them; where these lean neither way the guess is doubted."""
+    ways = []
+    for name, lean, side in (("one", 0.84, 1.0), ("mirrored", 0.84, -1.0), ("upright", 0.5, 1.0)):
+        teeth = [(x, side * y) for x, y in ratchet(120, lean)]
+        path = drawing(tmp_path / f"{name}.dxf", WHEEL=[teeth], ANCHOR=[[(x - 20.0, y + 5.0) for x, y in ANCHOR]])
+        found = propose([path])
+        assert ("lean neither way" in "".join(found.doubts)) == (name == "upright")
+        (tmp_path / name).mkdir()
+        for file, data in found.files.items():
+            (tmp_path / name / file).write_bytes(data)
+        ways.append(math.copysign(1.0, load(tmp_path / name).torques[0].value))
+    assert ways == [1.0, -1.0, -1.0]
+
+
+@pytest.mark.parametrize("name", ["graham", "recoil_anchor"])
+def test_an_anchor_gets_a_lift_angle(name: str, tmp_path: Path) -> None:
+    """From where one pallet lets go to where the other does: the lift and the locks, some degrees, of which 2° are the lift."""
+    found = propose([assembly(scene_of(name), tmp_path / f"{name}.dxf", "body")])
+    (tmp_path / "out").mkdir()
+    for file, data in found.files.items():
+        (tmp_path / "out" / file).write_bytes(data)
+    lift = load(tmp_path / "out").lift_angle
+    assert lift is not None and 2.0 < math.degrees(lift) < 4.0
+    assert next(guess for guess in found.guesses if guess.key == "timegrapher.lift_angle").why.startswith(
+        "from where one pallet"
+    )
+
+
+def test_two_levers_are_doubted(tmp_path: Path) -> None:
+    """The passing spring of a detent, drawn as a part that turns by itself."""
+    found = propose([assembly(scene_of("detent"), tmp_path / "detent.dxf", "own")])
+    assert any("no second lever of an escapement" in words for words in found.doubts)

@@ -1,0 +1,77 @@
+"""What of a proposal cannot be true, or could not be found in the drawing?
+
+A guess that is written down beside twenty others is easily overlooked; what keeps the mechanism from working is said aloud.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from watchsim.proposal.facing import Facing
+from watchsim.proposal.pieces import CLICK, DRIVER, LEVER, NONE, OSCILLATOR, WHEEL
+from watchsim.proposal.roles import Role, first_of
+
+
+def doubts(roles: Sequence[Role], facings: Sequence[Facing], apart: bool, leans: bool) -> list[str]:
+    """Sentences, the gravest first. `apart`: parts were put side by side; `leans`: teeth show which way the wheel turns."""
+    moving = [role for role in roles if role.moves]
+    met = {role.name for facing in facings for role, _ in facing.sides}
+    found = list(_layout(moving, facings, apart))
+    if not found and len(moving) > 1:
+        found += [f"{role.name} meets nothing that moves or holds it: {_cure(role)}" for role in moving if role.name not in met]
+        found += _chain(roles, facings)
+    found += _centres(moving)
+    wheel = first_of(roles, WHEEL)
+    stopped = any(role.task in (LEVER, OSCILLATOR, CLICK) for role in roles)
+    if wheel is not None and not leans and stopped and not any(role.task == DRIVER for role in roles):
+        found.append(
+            f"the teeth of {wheel.name} lean neither way: that it is driven clockwise is a guess. "
+            "If it runs backwards, change the sign of its torque"
+        )
+    return found
+
+
+def _layout(moving: Sequence[Role], facings: Sequence[Facing], apart: bool) -> Iterator[str]:
+    if len(moving) < 2:
+        return
+    cure = "give each its place with position, or draw them assembled; until then nothing acts on anything"
+    if apart:
+        yield f"the drawings do not show where the parts stand, and they were put side by side: {cure}"
+    elif not any(facing.first.moves and facing.second.moves and not facing.by_name_alone for facing in facings):
+        names = ", ".join(role.name for role in moving)
+        yield f"{names} lie side by side and never come within reach of each other, as in a layout for cutting: {cure}"
+
+
+def _cure(role: Role) -> str:
+    if role.task == OSCILLATOR:
+        return "it swings by itself and is no part of an escapement"
+    return "declare what it touches under [[contacts]], or leave it out"
+
+
+def _chain(roles: Sequence[Role], facings: Sequence[Facing]) -> Iterator[str]:
+    """A lever stands between a wheel and an oscillator, and a click on a wheel or cam; of levers there is one."""
+    pairs = [{facing.first.name, facing.second.name} for facing in facings]
+    wheel, swinging = first_of(roles, WHEEL), first_of(roles, OSCILLATOR)
+    levers = [role for role in roles if role.task == LEVER]
+    if wheel is None or swinging is None:
+        return
+    between = [lever for lever in levers if all({lever.name, one.name} in pairs for one in (wheel, swinging))]
+    if levers and not between:
+        yield (
+            f"no lever comes within reach of both {wheel.name} and {swinging.name}, so that nothing passes "
+            "from one to the other: look at which body each part was given to"
+        )
+    elif len(levers) > 1:
+        rest = ", ".join(lever.name for lever in levers if lever is not between[0])
+        yield (
+            f"{rest} is no second lever of an escapement: give its layers to {between[0].name}, or, where it is a passing "
+            f'spring, write on = "{between[0].name}" and a spring of its own'
+        )
+    elif not levers and {wheel.name, swinging.name} not in pairs:
+        yield f"{wheel.name} and {swinging.name} never come within reach of each other: nothing keeps {swinging.name} going"
+
+
+def _centres(moving: Sequence[Role]) -> Iterator[str]:
+    for role in moving:
+        if role.part.centre is not None and role.part.centre.worth == NONE:
+            yield f"nothing shows about which point {role.name} turns: its centre of area stands for it. Give its pivot"
