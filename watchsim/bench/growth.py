@@ -18,8 +18,8 @@ from watchsim.mechanism.compile import compile_scene
 from watchsim.paths import profiles_dir
 from watchsim.scene.load import load
 from watchsim.scene.scene import Recording, Scene
-from watchsim.simulation.runner import Run
 from watchsim.simulation.state import Stop
+from watchsim.simulation.systems import run_of
 
 DISTANCE = 0.03  # m between levers side by side
 APART = 0.013  # rad between the start angles of their balances, so that they do not tick at one instant
@@ -75,8 +75,9 @@ def _cpu_seconds(scene: Scene, duration: float) -> tuple[float, Stop]:
     """Of the stepping alone, with all cells known; the better of two."""
     best = math.inf
     for attempt in range(3):
-        run = Run(scene, compile_scene(scene), scene.tolerance, Recording(keep="statistics"))
+        run = run_of(scene, compile_scene(scene), scene.tolerance, Recording(keep="statistics"))
         run.warm_up()
+        run.begin()
         begun = time.process_time()
         stop = run.to_the_end(duration, None)
         if stop != Stop.DURATION:

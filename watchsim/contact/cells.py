@@ -13,6 +13,7 @@ import threading
 import time
 from collections import OrderedDict
 from typing import NamedTuple
+from weakref import WeakValueDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -112,10 +113,11 @@ def _cells(axis: Axis, travel: float, reach: float, fold: int = 1, ratio: float 
 
 Integers = NDArray[np.int64]
 Cell = tuple[int, ...]
-KEPT = 32  # pairs of bodies
+KEPT = 32  # pairs of bodies, besides those of runs under way
 MOST_CELLS = 1 << 18  # of one pair; beyond it its answers are forgotten
 
 _store: OrderedDict[bytes, Known] = OrderedDict()
+_used: WeakValueDictionary[bytes, Known] = WeakValueDictionary()
 _lock = threading.Lock()
 
 
@@ -160,10 +162,10 @@ def known_cells(model: Model, p: int, loose: Integers) -> Known:
     """
     key = _digest(model, p)
     with _lock:
-        known = _store.pop(key, None)
+        known = _store.pop(key, None) or _used.get(key)
         if known is None:
             known = Known(PairSearch(model, p, loose))
-        _store[key] = known
+        _store[key] = _used[key] = known
         while len(_store) > KEPT:
             _store.popitem(last=False)
     return known
@@ -173,6 +175,7 @@ def forget() -> None:
     """Drop all that is known, for measurements and tests."""
     with _lock:
         _store.clear()
+        _used.clear()
 
 
 def _digest(model: Model, p: int) -> bytes:

@@ -307,11 +307,12 @@ def compile_scene(scene: Scene, prefilter: bool = True) -> Compiled:
     """
     known = _last.get(prefilter)
     if known is None or known[0] is not scene:
-        known = _last[prefilter] = scene, _compiled(scene, prefilter)
+        known = _last[prefilter] = scene, compiled_anew(scene, prefilter)
     return known[1]
 
 
-def _compiled(scene: Scene, prefilter: bool) -> Compiled:
+def compiled_anew(scene: Scene, prefilter: bool) -> Compiled:
+    """The same, of a scene that nobody will ask for again."""
     size = scene_size(scene)
     scene, named = with_racks(scene, size)
     riding = rides(scene.bodies)

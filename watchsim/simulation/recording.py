@@ -372,7 +372,7 @@ class Recorder:
             waits = row_stays | (np.arange(len(rows)) == len(rows) - 1)
             rows, row_stays = rows[waits], row_stays[waits]
         else:
-            rows = rows.copy()
+            rows = rows if rows.base is None else rows.copy()
         self._rows.append((rows, row_stays))
         self._events.append((events.copy(), event_stays))
         while self._is_decided():

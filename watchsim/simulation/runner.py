@@ -11,7 +11,7 @@ import functools
 import signal
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from types import FrameType
 from typing import Any
@@ -26,7 +26,7 @@ from watchsim.dynamics.forces import stored_energy
 from watchsim.mechanism.compile import Compiled
 from watchsim.model import words_of
 from watchsim.scene.roles import frequency
-from watchsim.scene.scene import Recording, Scene
+from watchsim.scene.scene import Recording, Scene, Window
 from watchsim.simulation import EVENT_DRIVEN
 from watchsim.simulation.event_loop import EVENTS_PER_CONTACT, ROWS_PER_STEP, advance
 from watchsim.simulation.foregone import Foregone
@@ -138,7 +138,7 @@ def trajectory_of(run: Run, stop: Stop, wall: float, compile_time: float) -> Tra
         events=events,
         pairs=run.pairs,
         stop=stop,
-        stop_message=f"t = {time:.9g} s: {_words(run, stop)}",
+        stop_message=f"t = {time:.9g} s: {_words(run.failing, stop)}",
         simulated=time,
         wall=wall,
         compile=compile_time,
@@ -156,7 +156,7 @@ def trajectory_of(run: Run, stop: Stop, wall: float, compile_time: float) -> Tra
         spans=run.kept.spans(time),
         sums=run.tally.finished(),
         end_state=_end_state(run),
-        failure=failure_of(state, run.scratch, run.pairs) if stop == Stop.LCP_FAILED else None,
+        failure=run.failing.failure() if stop == Stop.LCP_FAILED else None,
     )
 
 
@@ -174,7 +174,7 @@ def _words(run: Run, stop: Stop) -> str:
     """The cause and what is known of where and why; where a driven body jams another, that is the cause."""
     if stop == Stop.LCP_FAILED:
         driven = {body.name for body in run.scene.bodies if body.prescribed is not None}
-        failure = failure_of(run.state, run.scratch, run.pairs) if driven else None
+        failure = run.failure() if driven else None
         return driven_into(failure, run.pairs, driven) or stop.sentence
     model, bodies = run.compiled.model, [body.name for body in run.scene.bodies]
     details: dict[Stop, Callable[[], str]] = {
@@ -182,9 +182,7 @@ def _words(run: Run, stop: Stop) -> str:
         Stop.FOREGONE: lambda: run.foregone.words if run.foregone else "",
         Stop.LEDGER: lambda: unaccounted(run.energy()),
         Stop.UNEXPLAINED: lambda: unexplained(run.state, run.pairs),
-        Stop.TOO_MANY_EVENTS: lambda: what_alternates(
-            run.scratch.ended, run.pairs, [bodies[k] for k in model.coordinates.body]
-        ),
+        Stop.TOO_MANY_EVENTS: run._what_alternates,
         Stop.FAR_AWAY: lambda: furthest(run.state, model, bodies),
     }
     words = details[stop]() if stop in details else ""
@@ -203,6 +201,12 @@ def load_for(compiled: Compiled) -> None:
     if len(compiled.model.contacts):
         load_shapely()
     stored_energy(compiled.model, compiled.q, compiled.u)
+
+
+def widened(windows: Sequence[Window], options: Options, steps: float = 1.0) -> NDArray[np.float64]:
+    """(k, 2): windows wider by so many steps on both sides, for the rows next to them."""
+    ends = np.array(windows, float).reshape(-1, 2)
+    return ends + steps * np.maximum(options.max_step, np.minimum(ends, options.natural)) * np.array([-1.0, 1.0])
 
 
 class Run:
@@ -230,9 +234,7 @@ class Run:
             functools.partial(events_of_scene, compiled),
         )
         self.tally = Tally(scene, self.pairs)
-        # A step wider, for the rows next to a window.
-        windows = np.array(self.kept.windows, float).reshape(-1, 2)
-        windows += np.maximum(self.options.max_step, np.minimum(windows, self.options.natural)) * np.array([-1.0, 1.0])
+        windows = widened(self.kept.windows, self.options)
         self.record = new_record(model, ROWS + ROWS_PER_STEP, EVENTS + EVENTS_PER_CONTACT * room_for(model), windows)
         self.watch = OverlapWatch(scene, compiled, self.method, self.kept.windows)
         self.stored_at_start = stored_energy(model, self.state.q, self.state.u)
@@ -241,6 +243,11 @@ class Run:
         self.foregone: Foregone | None = None  # looks for what ends the run early
         self.saved: SavedState | None = None
         self.parts_before = 0  # what was flushed before the state was saved
+
+    @property
+    def failing(self) -> Run:
+        """The run to ask about why it ended."""
+        return self
 
     def begin(self) -> None:
         """Begin at the scene's start; SceneError where bodies overlap there (see `start.clear_start`)."""
@@ -320,6 +327,7 @@ class Run:
             stop = Stop.OUT_OF_MEMORY
         if self.saved is None:
             self.saved = self.save()
+        self._come_together()
         self.flush()
         self._look()
         self.watch.see()
@@ -328,6 +336,9 @@ class Run:
         if self._overlaps():
             return Stop.OVERLAP
         return Stop.LEDGER if self._ledger_fails() else stop
+
+    def _come_together(self) -> None:
+        """Bring what runs side by side to one time at the end."""
 
     def _ledger_fails(self) -> bool:
         """Is the residual of the energy ledger more than rounding?"""
@@ -373,17 +384,21 @@ class Run:
             if self._is_foregone():
                 return Stop.FOREGONE
             if progress is not None:
-                self._tell_crowd(getattr(progress, "crowded", None))
+                crowded, words = getattr(progress, "crowded", None), self._crowding()
+                if crowded is not None:
+                    crowded(words)
                 progress(float(self.state.clock.time), duration)
             if interrupted():
                 return Stop.INTERRUPTED
 
-    def _tell_crowd(self, crowded: Callable[[str], None] | None) -> None:
+    def _crowding(self) -> str:
+        """Which events crowd, in words; "" where none do."""
         self.crowd.look(float(self.state.clock.time), int(self.state.counts.instants))
-        if crowded is not None:
-            model, bodies = self.compiled.model, [body.name for body in self.scene.bodies]
-            who = what_alternates(self.scratch.ended, self.pairs, [bodies[k] for k in model.coordinates.body])
-            crowded(self.crowd.words(who))
+        return self.crowd.words(self._what_alternates())
+
+    def _what_alternates(self) -> str:
+        bodies = [self.scene.bodies[k].name for k in self.compiled.model.coordinates.body]
+        return what_alternates(self.scratch.ended, self.pairs, bodies)
 
     def _is_foregone(self) -> bool:
         time = float(self.state.clock.time)
@@ -391,6 +406,10 @@ class Run:
             return False
         self.flush()
         return self.foregone.look(time, self.state.q, float(self.tally.last[0]))
+
+    def failure(self) -> dict[str, Any]:
+        """What is known of the problem that nothing solved."""
+        return failure_of(self.state, self.scratch, self.pairs)
 
     def counts(self) -> dict[str, int]:
         """How much work was done: the names of COUNT_NAMES and of the cells."""

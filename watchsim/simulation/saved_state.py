@@ -20,6 +20,8 @@ from watchsim.mechanism.compile import Compiled
 TALLIED = ("kinds", "beats", "moments", "last", "carried")
 TALLIED_LATER = ("late",)  # not in states of earlier versions: they begin blank
 LATER = ("returning", "returned", "row_a", "row_jerk", "since_row")  # the same of the state itself
+# Of systems side by side: rows and events that wait to be merged, and how many of each system.
+AHEAD = ("ahead", "ahead_events", "ahead_counts")
 REQUESTED = ("method", "step", "tolerance")
 
 
@@ -62,7 +64,7 @@ class SavedState:
     def _recorded_is_whole(self) -> bool:
         if not self.recorded:
             return True
-        if set(self.recorded) != {"met", "last", "row", "stays"}:
+        if not {"met", "last", "row", "stays"} <= set(self.recorded) <= {"met", "last", "row", "stays", *AHEAD}:
             return False
         met, last, row, stays = (self.recorded[name] for name in ("met", "last", "row", "stays"))
         shapes = met.shape == () and last.shape == (2,) and row.ndim == 1 and stays.shape == (self.rows,)

@@ -24,6 +24,7 @@ from watchsim.simulation.runner import EVENTS, ROWS, Progress, Run, load_for, tr
 from watchsim.simulation.saved_state import SavedState
 from watchsim.simulation.scratch import Until, new_record
 from watchsim.simulation.state import USUAL_STEP, Stop, room_for
+from watchsim.simulation.systems import run_of
 from watchsim.simulation.trajectory import Trajectory, joined
 from watchsim.tolerances import COARSEST_TOLERANCE, FINEST_TOLERANCE
 from watchsim.units import TIME, UnitError, parse
@@ -147,7 +148,7 @@ def simulate(  # noqa: PLR0913 - options, by name
     if method == MOREAU:
         run: Run = MoreauRun(scene, compiled, tolerance, recording, USUAL_STEP if step is None else float(step))
     else:
-        run = Run(scene, compiled, tolerance, recording)
+        run = run_of(scene, compiled, tolerance, recording, prefilter)
     if stream is not None:
         run.kept.stream(Path(stream))
     if follow is not None:
