@@ -75,7 +75,7 @@ def _part(scene: Scene, own: set[str], ties: list[tuple[str, ...]]) -> Scene:
     )
 
 
-JOINING = ("springs", "torques", "damping", "contacts", "gears", "rigid_gears", "line_springs")
+JOINING = ("springs", "torques", "damping", "bearings", "contacts", "gears", "rigid_gears", "line_springs")
 
 
 def _ends(one: Any) -> tuple[str, ...]:
