@@ -414,8 +414,10 @@ MEASURED = {
     "stability_grid.png": "scripts/reports/stability.py",
     "stability_margins.png": "scripts/reports/stability.py",
 }
-# Pictures of studies of many hours for 0.1, kept with the numbers of their pages; their labels are checked by eye.
+# Kept as they are, their labels checked by eye: studies of many hours, with the numbers of their pages; a solid as another program
+# renders it; the live page as a browser shows it.
 KEPT = {
+    "live.png",
     "balance_solids.png",
     *(f"coaxial_{name}.png" for name in ("best", "direct", "friction", "indirect", "isochronism", "range", "twin")),
     *(f"swiss_study_{name}.png" for name in ("best", "friction", "isochronism", "period", "run_down", "sensitivity")),
