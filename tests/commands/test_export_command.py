@@ -5,8 +5,10 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import ezdxf
 import pytest
 import trimesh
+from ezdxf import bbox
 
 import watchsim as ws
 from watchsim.cli import main
@@ -43,6 +45,20 @@ def test_everything_of_a_scene(tmp_path: Path, capsys: pytest.CaptureFixture[str
     assert len(whole.geometry) == 10
     pivot = whole.graph.get("balance")[0][:3, 3]
     assert pivot == pytest.approx((0.0, 7.131281292110203e-3, 0.0), abs=1e-9)
+
+
+def test_a_dxf_opens_with_everything_in_view_and_lists_its_layers(tmp_path: Path) -> None:
+    assert main(["export", SWISS, "-o", str(tmp_path / "out"), "--format", "dxf", "--bodies", "lever"]) == 0
+    document = ezdxf.readfile(tmp_path / "out" / "lever.dxf")
+    box = bbox.extents(entity for entity in document.modelspace() if entity.dxftype() != "POINT")
+    low, high = (document.header[name] for name in ("$EXTMIN", "$EXTMAX"))
+    drawn = (box.extmin.x, box.extmin.y, box.extmax.x, box.extmax.y)  # arcs as chords
+    assert (*low[:2], *high[:2]) == pytest.approx(drawn, abs=1e-2)
+    (view,) = document.viewports.get("*Active")
+    assert view.dxf.height > max(box.size.x, box.size.y)
+    assert tuple(view.dxf.center)[:2] == pytest.approx((box.center.x, box.center.y), abs=1e-2)
+    assert {entity.dxf.layer for entity in document.modelspace()} <= {layer.dxf.name for layer in document.layers}
+    assert "PIVOT" in document.layers
 
 
 def test_only_some_bodies_and_formats(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

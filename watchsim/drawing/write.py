@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 from xml.sax.saxutils import escape, quoteattr
 
-from watchsim.geometry.loops import Loop, extents
+from watchsim.geometry.loops import Box, Loop, extents
 from watchsim.geometry.primitives import Arc, Edge, Line, Point
 
 if TYPE_CHECKING:
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
 MM = 1e3
 TIGHT = 1e-13  # m
+VIEW = 1.1  # of the larger side: what is seen when the file is opened
 FORBIDDEN = str.maketrans(dict.fromkeys('<>/\\":;?*|=`,', "_"))  # in names of layers
 
 
@@ -47,17 +48,30 @@ def dxf_text(loops: Iterable[Loop], points: Iterable[tuple[str, Point]] = (), co
         for layer, colour in (colours or {}).items():
             document.layers.add(_name(layer), true_color=int(colour[1:], 16))
         space = document.modelspace()
-        outlines = list(loops)
+        outlines, marks = list(loops), list(points)
+        for layer in dict.fromkeys([*(loop.layer for loop in outlines), *(layer for layer, _ in marks)]):
+            if _name(layer) not in document.layers:
+                document.layers.add(_name(layer))
+        _show(document, extents(outlines) or (0.0, 0.0, 0.0, 0.0))
         joints = Counter(joint for loop in outlines for joint in _joints(loop))
         for loop in outlines:
             touching = any(joints[joint] > 1 for joint in _joints(loop))
             _add_loop(space, loop, touching)
-        for layer, (x, y) in points:
+        for layer, (x, y) in marks:
             space.add_point((MM * x, MM * y), dxfattribs={"layer": _name(layer)})
         document.classes.add_required_classes(document.dxfversion)
         document.classes.classes = dict(sorted(document.classes.classes.items()))  # some come from a set, in any order
         document.write(stream)
     return stream.getvalue()
+
+
+def _show(document: Drawing, box: Box) -> None:
+    """Say in the file how far the outlines reach, and open it with all of them in view."""
+    x0, y0, x1, y1 = (MM * side for side in box)
+    space = document.modelspace()
+    space.reset_extents((x0, y0, 0.0), (x1, y1, 0.0))
+    document.header["$EXTMIN"], document.header["$EXTMAX"] = (x0, y0, 0.0), (x1, y1, 0.0)
+    document.set_modelspace_vport(VIEW * max(x1 - x0, y1 - y0) or 1.0, (0.5 * (x0 + x1), 0.5 * (y0 + y1)))
 
 
 @contextmanager
