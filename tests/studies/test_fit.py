@@ -70,6 +70,7 @@ def test_a_decay_without_noise(balance, tmp_path, capsys):
     assert {"keys", "residual", "cannot_tell_apart", "wall_s"} <= set(found) and found["cannot_tell_apart"] == []
     for key, value in zip(KEYS, TRUE, strict=True):
         assert found["keys"][key]["value"] == pytest.approx(value, rel=1e-7)
+    assert "95 % intervals" in ws.fit(balance, path, KEYS)._repr_html_()
     again = ws.simulate(ws.load(tmp_path / "out"), 2.0)
     assert math.degrees(again.at(1.3)[0][0]) == pytest.approx(float(swing(np.array(1.3), *TRUE)), abs=1e-4)
     assert (tmp_path / "out" / "fit.png").is_file()

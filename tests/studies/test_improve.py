@@ -63,6 +63,7 @@ def test_a_root_of_a_closed_form(tmp_path):
     scene = scene_of(tmp_path, DECAY)
     found = ws.improve(scene, {"bodies.wheel.inertia": None}, "period = 0.2 s", duration=2.0)
     assert found.found and found.keys["bodies.wheel.inertia"][1] == pytest.approx(3e-6 * (0.2 / math.tau) ** 2, rel=1e-9)
+    assert "bodies.wheel.inertia" in found._repr_html_()
     assert ws.improve(scene, {"bodies.wheel.inertia": ("1 g·mm²", "1.5 g·mm²")}, "period = 0.2 s", duration=2.0).message == (
         "period comes to 0.140496 s at bodies.wheel.inertia = 1.5 g·mm², where its limits end"
     )

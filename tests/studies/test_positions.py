@@ -56,6 +56,7 @@ def j1(x: float) -> float:
 
 def test_each_reading_is_the_cycle_of_its_state_made_by_hand(day: Positions) -> None:
     """Gravity, and a constant torque in place of the mainspring, the wheel being 4·86400 teeth on."""
+    assert "12H" in day._repr_html_() and "<img" in day._repr_html_()
     assert day.whole and day.states == ((23.0, 0.0), (23.0, 24.0)) and len(day.rows) == 12
     turned = 86400 * 4 / 15 / 6480  # of the barrel
     torque = -0.75 / 6480 * (7.4e-3 + (turned - 3.5) / 3.5 * (3e-3 - 7.4e-3))

@@ -65,6 +65,7 @@ def test_the_study_says_what_json_promises(whole):
     assert numbers["worst"][0]["why"].startswith("amplitude too low")
     assert "torques.0.value" in whole.message
     json.dumps(numbers, allow_nan=False)
+    assert "amplitude (°)" in whole._repr_html_() and "<img" in whole._repr_html_()
 
 
 def test_the_linear_prediction_is_that_of_the_sensitivities(desk, whole):

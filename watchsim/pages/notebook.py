@@ -18,16 +18,24 @@ from watchsim.pages.html import Markup, card, element, image, table
 from watchsim.pages.player import shown
 from watchsim.pages.report_page import player_text
 from watchsim.pages.timing_sheet import AVERAGED, both_ways, with_error
+from watchsim.render.positions_plot import plot_positions
 from watchsim.render.stage import Stage, at_rest
 from watchsim.render.study_plot import axis_label, output_label, plot_sensitivity, plot_sweep, usual_value
 from watchsim.render.style import minus, small_png
+from watchsim.render.tolerance_plot import plot_tolerance
 from watchsim.render.view import Window, poses
 from watchsim.scene.roles import frequency, swings
 from watchsim.scene.scene import Scene
 from watchsim.simulation.trajectory import Trajectory
 from watchsim.studies.cycle import Cycle
+from watchsim.studies.fit import Fit
+from watchsim.studies.goals import Better
+from watchsim.studies.point import OUTPUTS
+from watchsim.studies.positions import Positions
 from watchsim.studies.sensitivity import Sensitivity
+from watchsim.studies.study_report import POSITION_HEAD, poise_words, positions_rows
 from watchsim.studies.sweep import Sweep
+from watchsim.studies.tolerance_result import ToleranceStudy
 
 ROWS = 12  # of a table; the rest is counted
 DOTS_STUDY_CARDS, SHOWN = 560, 420  # of a picture, and how wide it is shown
@@ -76,6 +84,48 @@ def sensitivity_html(found: Sensitivity) -> str:
     shown = table(head, rows, f"the first {ROWS} of {count} quantities" if count > ROWS else "")
     bars = small_png(plot_sensitivity(found, PRINTED), DOTS_STUDY_CARDS)
     return card(f"What matters in {found.title}", lines, shown, element("div", image(bars, "Effects as bars", SHOWN)))
+
+
+def tolerancestudy_html(study: ToleranceStudy) -> str:
+    """The yield, what the watches do, and the plots."""
+    rows = [
+        [output_label(output), *(_value(one, 5) for one in (spread.mean, spread.sigma, spread.cpk)), str(spread.count)]
+        for output, spread in ((one, study.outputs[one.column]) for one in OUTPUTS.values() if one.column in study.outputs)
+    ]
+    shown = table(["output", "mean", "σ", "Cpk", "samples"], rows, "what the watches do")
+    plots = small_png(plot_tolerance(study, PRINTED), DOTS_STUDY_CARDS)
+    return card(
+        f"Tolerances of {study.title}", [f"{study.message}."], shown, element("div", image(plots, study.message, SHOWN))
+    )
+
+
+def better_html(found: Better) -> str:
+    """What was changed, and what holds it back."""
+    rows = [[knob.key, *map(knob.shown, found.keys[knob.key])] for knob in found.knobs if knob.key in found.keys]
+    shown = table(["", "old", "new"], rows, "what was changed") if rows else None
+    return card(f"{'Better' if found.found else 'No better'} {found.title}", [found.message, *found.active], shown)
+
+
+def fit_html(found: Fit) -> str:
+    """The fitted values with their intervals, and what cannot be distinguished."""
+    rows = []
+    for knob in found.knobs:
+        one = found.keys.get(knob.key)
+        if one is not None:
+            ends = ("not bounded" if end is None else knob.shown(end) for end in (one.low, one.high))
+            rows.append([knob.key, knob.shown(one.old), knob.shown(one.value), *ends])
+    shown = (
+        table(["", "scene", "fitted", "from", "to"], rows, f"{found.measured.count} readings, 95 % intervals") if rows else None
+    )
+    return card(f"{found.title}, fitted to {found.measured.name}", [found.message, *found.words], shown)
+
+
+def positions_html(found: Positions) -> str:
+    """What a timing machine shows, the poise error, and the dials."""
+    shown = table(("at home", *POSITION_HEAD), positions_rows(found, [found.home]), "just wound, as near to 23 °C as there is")
+    dials = small_png(plot_positions(found, PRINTED), DOTS_STUDY_CARDS)
+    pictures = element("div", image(dials, "rate and amplitude on dials", SHOWN))
+    return card(f"Positions of {found.title}", [f"{poise_words(found)}."], shown, pictures)
 
 
 def _value(value: float | str | None, digits: int) -> str:

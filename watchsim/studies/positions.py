@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from watchsim.analysis.timing import DAY
+from watchsim.displays import notebook_html
 from watchsim.scene.errors import Fault, SceneError
 from watchsim.scene.forces import G
 from watchsim.scene.keys import AT_HOME
@@ -114,6 +115,9 @@ class Positions:
     def __repr__(self) -> str:
         states = len({tuple(row[name] for name in STATE) for row in self.rows})
         return f"<Positions of {self.title!r}: {len(self.rows)} readings in {states} states>"
+
+    def _repr_html_(self) -> str:
+        return notebook_html(self)
 
     @property
     def states(self) -> tuple[tuple[float, float], ...]:
@@ -379,13 +383,13 @@ def _ups(names: Sequence[str], scene: Scene) -> dict[str, float | None]:
 
 def _row(row: Row, ups: Mapping[str, float | None]) -> Row:
     """One reading with its state in the units of a timing machine."""
-    told = {name: row[name] for one in READINGS for name in (one, f"{one}_error")}
+    readings = {name: row[name] for one in READINGS for name in (one, f"{one}_error")}
     return {
         "position": row["watch.position"],
         "up_deg": ups[row["watch.position"]],
         "temperature_c": row["watch.temperature"],
         "wound_h": row.get("watch.since_wound", 0.0) / 3600.0,
-        **told,
+        **readings,
         "verdict": row["verdict"],
         "message": row["message"],
     }

@@ -18,69 +18,69 @@ const ask = async (what, body = {}) => {
 const doing = (text) => { $("doing").textContent = text; };
 const secondsText = (seconds) => `${seconds.toFixed(seconds < 10 ? 2 : 0)} s`;
 
-heard("status", (told) => {
-  if (told.order > order) { doing("Computing …"); $("outcome").classList.add("old"); }
-  order = told.order;
-  $("undo").disabled = !told.undo;
-  $("hold").setAttribute("aria-pressed", String(told.hold));
+heard("status", (received) => {
+  if (received.order > order) { doing("Computing …"); $("outcome").classList.add("old"); }
+  order = received.order;
+  $("undo").disabled = !received.undo;
+  $("hold").setAttribute("aria-pressed", String(received.hold));
 });
-heard("scene", (told) => {
+heard("scene", (received) => {
   $("faults").hidden = faulty.hidden = true;
   root.classList.remove("faulted");
-  document.title = document.querySelector("h1").textContent = told.title;
-  drawers(told);
+  document.title = document.querySelector("h1").textContent = received.title;
+  drawers(received);
 });
-heard("progress", (told) => doing(`${numbersIn}${Number(told.done.toPrecision(3))} of ${Number(told.whole.toPrecision(3))} s simulated …`));
-heard("numbers", (told) => {
-  numbersIn = `Numbers after ${secondsText(told.seconds)}, `;
+heard("progress", (received) => doing(`${numbersIn}${Number(received.done.toPrecision(3))} of ${Number(received.whole.toPrecision(3))} s simulated …`));
+heard("numbers", (received) => {
+  numbersIn = `Numbers after ${secondsText(received.seconds)}, `;
   doing(`${numbersIn}motion follows …`);
   $("outcome").classList.remove("old");
-  showOutcome(told);
+  showOutcome(received);
 });
-heard("motion", (told) => {
-  doing(`${numbersIn}motion after ${secondsText(told.seconds)}`);
+heard("motion", (received) => {
+  doing(`${numbersIn}motion after ${secondsText(received.seconds)}`);
   numbersIn = "";
-  if (told.order === shownOrder) return; // heard again after an interruption
-  shownOrder = told.order;
+  if (received.order === shownOrder) return; // heard again after an interruption
+  shownOrder = received.order;
   const held = $("hold").getAttribute("aria-pressed") === "true" && reference;
   reference = held || scenery || null;
   document.querySelector("main").classList.remove("waiting");
   $("poster")?.remove();
-  $("picture").insertAdjacentHTML("afterbegin", told.places.poster);
-  document.querySelector(".lead").textContent = told.places.lead;
-  document.querySelector("footer").textContent = told.places.made;
+  $("picture").insertAdjacentHTML("afterbegin", received.places.poster);
+  document.querySelector(".lead").textContent = received.places.lead;
+  document.querySelector("footer").textContent = received.places.made;
   root.classList.add("dated"); // the timing sheet follows
-  open(told.data);
+  open(received.data);
   haunt();
 });
-heard("sheet", (told) => {
+heard("sheet", (received) => {
   root.classList.remove("dated");
   document.querySelector(".verdict")?.remove();
-  header.insertAdjacentHTML("beforeend", told.verdict);
+  header.insertAdjacentHTML("beforeend", received.verdict);
   for (const section of document.querySelectorAll("#sheet > section:not(.live)")) section.remove();
-  $("sheet").insertAdjacentHTML("afterbegin", told.sheet);
+  $("sheet").insertAdjacentHTML("afterbegin", received.sheet);
 });
-heard("faults", (told) => {
-  const box = $("faults"), count = told.faults.length;
+heard("faults", (received) => {
+  const box = $("faults"), count = received.faults.length;
   numbersIn = "";
   doing(count === 1 ? "A fault; no result." : `${count} faults; no result.`);
   root.classList.add("faulted");
-  box.replaceChildren(tag("b", "Nothing can be computed of what was saved:"), ...told.faults.map((text) => tag("pre", text)));
-  for (const one of told.drawings) {
+  box.replaceChildren(tag("b", "Nothing can be computed of what was saved:"), ...received.faults.map((text) => tag("pre", text)));
+  for (const one of received.drawings) {
     const list = document.createElement("ol");
     list.append(...one.faults.map(([place, text]) => tag("li", place ? `${place}: ${text}` : text)));
     box.append(tag("b", one.name), list);
   }
   box.hidden = false;
-  faulty.replaceChildren(...told.drawings.map((one) => tag("img", "", { src: `data:image/png;base64,${one.picture}`, alt: `${one.name}: its faults in numbered circles` })));
-  if (!told.drawings.length) faulty.append(tag("p", "No motion: the faults are listed beside."));
+  faulty.replaceChildren(...received.drawings.map((one) => tag("img", "", { src: `data:image/png;base64,${one.picture}`, alt: `${one.name}: its faults in numbered circles` })));
+  if (!received.drawings.length) faulty.append(tag("p", "No motion: the faults are listed beside."));
   faulty.hidden = false;
 });
 news.onerror = () => { if (news.readyState === EventSource.CLOSED || !order) doing("watchsim live does not answer."); else doing("watchsim live has ended or is out of reach; what is shown stays."); };
 news.onopen = () => { if (order && order === shownOrder) doing("Connected again."); };
 
 // What changed, and what came of it; the first time there is nothing to compare with.
-const showOutcome = (told) => {
+const showOutcome = (received) => {
   const tableOf = (caption, head, rows) => {
     const made = document.createElement("table"), body = made.createTBody(), top = made.createTHead().insertRow();
     made.className = "numbers";
@@ -90,10 +90,10 @@ const showOutcome = (told) => {
     frame.setAttribute("role", "region"); frame.setAttribute("aria-label", caption); frame.append(made);
     return frame;
   };
-  const results = told.first ? told.results.map(([name, , value]) => [name, value]) : told.results;
-  const parts = told.changed.length ? [tableOf("In the scene", ["changed", "before", "now"], told.changed)] : [];
-  parts.push(tableOf("Result", told.first ? ["result", "now"] : ["result", "before", "now", "difference", "±"], results));
-  if (told.message) parts.push(tag("p", told.message));
+  const results = received.first ? received.results.map(([name, , value]) => [name, value]) : received.results;
+  const parts = received.changed.length ? [tableOf("In the scene", ["changed", "before", "now"], received.changed)] : [];
+  parts.push(tableOf("Result", received.first ? ["result", "now"] : ["result", "before", "now", "difference", "±"], results));
+  if (received.message) parts.push(tag("p", received.message));
   $("outcome").replaceChildren(...parts);
 };
 
@@ -104,19 +104,19 @@ const haunt = () => {
 
 // Dimensions as sliders within their limits, all other numbers as they are written; each goes to the file when it is left.
 const fields = new Map();
-const drawers = (told) => {
-  const wanted = [...told.knobs.map((one) => one.key), ...told.values.map(([key]) => key)];
+const drawers = (received) => {
+  const wanted = [...received.knobs.map((one) => one.key), ...received.values.map(([key]) => key)];
   if (wanted.join() !== [...fields.keys()].join()) {
     const focus = document.activeElement?.dataset?.key;
     fields.clear();
-    $("knobs").replaceChildren(...told.knobs.map(knob));
-    $("values").replaceChildren(...told.values.map(([key]) => field(key, key, tag("input", "", { type: "text", spellcheck: false, autocomplete: "off" }))));
+    $("knobs").replaceChildren(...received.knobs.map(knob));
+    $("values").replaceChildren(...received.values.map(([key]) => field(key, key, tag("input", "", { type: "text", spellcheck: false, autocomplete: "off" }))));
     if (focus && fields.has(focus)) fields.get(focus).input.focus();
   }
-  for (const one of told.knobs) fields.get(one.key).show(one.value);
-  for (const [key, value] of told.values) fields.get(key).show(value);
-  $("knobs").parentElement.hidden = !told.knobs.length;
-  $("values").parentElement.hidden = !told.values.length;
+  for (const one of received.knobs) fields.get(one.key).show(one.value);
+  for (const [key, value] of received.values) fields.get(key).show(value);
+  $("knobs").parentElement.hidden = !received.knobs.length;
+  $("values").parentElement.hidden = !received.values.length;
 };
 const field = (key, name, input, slider = null, unit = "") => {
   const row = tag("div", "", { className: slider ? "knob" : "knob value" }), words = tag("label", name), refused = tag("small", "", { hidden: true, id: `no-${key}` });
