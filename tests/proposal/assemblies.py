@@ -22,7 +22,8 @@ def scene_of(name: str) -> Scene:
 def assembly(scene: Scene, path: Path, layers: str = "own", marks: bool = True, without: tuple[str, ...] = ()) -> Path:
     """Draw a scene in `path`: with a balance, it and the lever at rest, all else as it starts; fixed parts have no mark.
 
-    layers  own: as in the drawings of the parts; body: with the body's name before; loose: everything on layer 0
+    layers  own: as in the drawings of the parts; body: with the body's name before; whole: the body's name;
+            loose: everything on layer 0
     """
     springs = {spring.body for spring in scene.springs} if keeps_time(scene) else set()
     loops, points = [], []
@@ -32,7 +33,8 @@ def assembly(scene: Scene, path: Path, layers: str = "own", marks: bool = True, 
         for loop in (*body.loops, *body.decoration):
             if loop.layer in without:
                 continue
-            name = {"own": loop.layer, "body": f"{body.name}_{loop.layer}", "loose": "0"}[layers]
+            before = f"{body.name}_{loop.layer}"
+            name = {"own": loop.layer, "body": before, "whole": body.name, "loose": "0"}[layers]
             loops.append(replace(loop.moved(angle, (x, y)), layer=name))
         if body.motion != "fixed" and marks:
             points.append(("PIVOT", (x, y)))

@@ -106,6 +106,28 @@ def test_an_anchor_gets_a_lift_angle(name: str, tmp_path: Path) -> None:
     )
 
 
+@pytest.mark.parametrize(
+    ("name", "layers", "words"),
+    [
+        ("swiss_lever", "whole", "lever and balance lie over each other"),
+        ("cylinder", "whole", "wheel and balance lie over each other"),
+        ("cam", "whole", "follower cannot give way to cam by turning about its pivot"),
+    ],
+)
+def test_what_a_flat_drawing_does_not_show_is_doubted(name: str, layers: str, words: str, tmp_path: Path) -> None:
+    """Surfaces of several heights on one layer, and a follower whose guide is no pivot."""
+    found = propose([assembly(scene_of(name), tmp_path / f"{name}.dxf", layers)])
+    assert words in "".join(found.doubts)
+
+
+def test_star_jumper_and_finger_are_known_by_their_names(tmp_path: Path) -> None:
+    found = propose([assembly(scene_of("jumper"), tmp_path / "jumper.dxf", "whole")])
+    assert {role.name: role.task for role in found.roles} == {"finger": "driver", "star": "wheel", "jumper": "click"}
+    assert found.doubts == ()
+    keys = {guess.key for guess in found.guesses}
+    assert {"springs.0.stiffness", "bodies.finger.velocity"} <= keys and "timegrapher.lift_angle" not in keys
+
+
 def test_two_levers_are_doubted(tmp_path: Path) -> None:
     """The passing spring of a detent, drawn as a part that turns by itself."""
     found = propose([assembly(scene_of("detent"), tmp_path / "detent.dxf", "own")])

@@ -5,9 +5,11 @@ A guess that is written down beside twenty others is easily overlooked; what kee
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator, Sequence
 
 from watchsim.proposal.facing import Facing
+from watchsim.proposal.parts import nose_of
 from watchsim.proposal.pieces import CLICK, DRIVER, LEVER, NONE, OSCILLATOR, WHEEL
 from watchsim.proposal.roles import Role, first_of
 
@@ -20,6 +22,8 @@ def doubts(roles: Sequence[Role], facings: Sequence[Facing], apart: bool, leans:
     if not found and len(moving) > 1:
         found += [f"{role.name} meets nothing that moves or holds it: {_cure(role)}" for role in moving if role.name not in met]
         found += _chain(roles, facings)
+        found += _heights(moving, facings)
+        found += _followers(roles)
     found += _centres(moving)
     wheel = first_of(roles, WHEEL)
     stopped = any(role.task in (LEVER, OSCILLATOR, CLICK) for role in roles)
@@ -37,7 +41,9 @@ def _layout(moving: Sequence[Role], facings: Sequence[Facing], apart: bool) -> I
     cure = "give each its place with position, or draw them assembled; until then nothing acts on anything"
     if apart:
         yield f"the drawings do not show where the parts stand, and they were put side by side: {cure}"
-    elif not any(facing.first.moves and facing.second.moves and not facing.by_name_alone for facing in facings):
+    elif not any(facing.first.moves and facing.second.moves and not facing.by_name_alone for facing in facings) and not any(
+        _lie_over(one, other) for one, other in itertools.combinations(moving, 2)
+    ):
         names = ", ".join(role.name for role in moving)
         yield f"{names} lie side by side and never come within reach of each other, as in a layout for cutting: {cure}"
 
@@ -69,6 +75,44 @@ def _chain(roles: Sequence[Role], facings: Sequence[Facing]) -> Iterator[str]:
         )
     elif not levers and {wheel.name, swinging.name} not in pairs:
         yield f"{wheel.name} and {swinging.name} never come within reach of each other: nothing keeps {swinging.name} going"
+
+
+MANY = 3  # contacts of two bodies, without names that fit: more are likely to be of several heights
+
+
+def _lie_over(one: Role, other: Role) -> bool:
+    return any(p.region.intersects(q.region) for p in one.part.pieces for q in other.part.pieces)
+
+
+def _heights(moving: Sequence[Role], facings: Sequence[Facing]) -> Iterator[str]:
+    """Parts that lie over each other, where no name says which of their surfaces are at one height."""
+    partners = [{WHEEL, LEVER}, {LEVER, OSCILLATOR}]
+    partners += [] if any(role.task == LEVER for role in moving) else [{WHEEL, OSCILLATOR}]
+    for one, other in itertools.combinations(moving, 2):
+        met = [facing for facing in facings if {facing.first.name, facing.second.name} == {one.name, other.name}]
+        nameless = not any(facing.by_name for facing in met)
+        if {one.task, other.task} in partners and nameless and (len(met) > MANY or not met) and _lie_over(one, other):
+            taken = f"{len(met)} contacts were taken for likely" if met else "no contact was taken for likely"
+            yield (
+                f"{one.name} and {other.name} lie over each other, and a flat drawing does not show which of their surfaces "
+                f"are at one height; {taken}. Give surfaces that touch layers of their own, such as TEETH, STONES, FORK and PIN"
+            )
+
+
+FLAT = 0.2  # share of its motion: with less a follower cannot give way
+
+
+def _followers(roles: Sequence[Role]) -> Iterator[str]:
+    """What cannot be lifted by a cam when it turns about its pivot slides, or its pivot lies elsewhere."""
+    cam = first_of(roles, DRIVER)
+    if cam is None or cam.part.centre is None or first_of(roles, WHEEL) is not None:
+        return
+    for role in roles:
+        if role.task == CLICK and nose_of(role.part, cam.part).share < FLAT:
+            yield (
+                f"{role.name} cannot give way to {cam.name} by turning about its pivot, which lies behind it: where it is "
+                'guided straight, write motion = "slide" with its direction, a mass and a spring in N/m'
+            )
 
 
 def _centres(moving: Sequence[Role]) -> Iterator[str]:

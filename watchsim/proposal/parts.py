@@ -409,10 +409,12 @@ STEP = math.radians(0.1)
 
 @dataclass(frozen=True)
 class Nose:
-    """Of a click: the way (+1 counter-clockwise) that leads into the wheel, and its distance from the click's pivot (m)."""
+    """Of a click: the way (+1 counter-clockwise) that leads into the wheel, its distance from the click's pivot (m), and
+    the share of its motion that leads to the wheel's centre: 1 where the click turns square to the wheel, 0 where it cannot."""
 
     inward: int
     arm: float
+    share: float
 
 
 def is_one_sided(part: Part, wheel: Part) -> bool:
@@ -430,7 +432,10 @@ def nose_of(part: Part, wheel: Part) -> Nose:
     at = wheel.centre.at
     _, place = _closest(part, at, 0.0)
     closer = _closest(part, at, STEP)[0] < _closest(part, at, -STEP)[0]
-    return Nose(1 if closer else -1, math.dist(part.centre.at, place))
+    (x, y), (px, py) = place, part.centre.at
+    away, arm = math.dist(place, at), math.dist(place, (px, py))
+    across = abs((x - px) * (at[1] - y) - (y - py) * (at[0] - x))
+    return Nose(1 if closer else -1, arm, across / (away * arm) if away > 0.0 and arm > 0.0 else 0.0)
 
 
 def toothing(wheel: Part) -> Turned | None:
