@@ -7,9 +7,9 @@ that has loaded everything (see warm.py).
 
 KILL: no half file under a final name, no leftover after the next command's sweep, the user's own file is there; each fifth time
 the next command is run as well, and must be fine.
---helpers pool: KILL goes to a helper of a sweep instead (a worker, the server they are forked from, the tracker of resources),
-each fourth time to the sweep itself. --helpers cluster: to a worker of a local dask cluster, which is replaced, or each fourth
-time to its scheduler. The sweep ends with status 0, or with 3 and is gone on with; all rows are there, no traceback, no orphan.
+--helpers pool: KILL goes to a worker process of a study instead, each fourth time to the study itself. --helpers cluster: to a
+worker of a local dask cluster, which is replaced, or to its scheduler or the study, each fourth time. The study ends with
+status 0, or is gone on with; its rows and table are then those of one that nobody disturbed, no traceback, no orphan.
 INT and TERM: exit status 130 and 143, or 0 where the command had ended before; results readable where there are any, no
 traceback, no leftover.
 """
@@ -18,10 +18,13 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import csv
+import json
 import os
 import random
 import shutil
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -160,72 +163,102 @@ def one(
     return name, str(process.returncode), wrong
 
 
-HELPED = ["sweep", str(ROOT / "profiles" / "bench_lever"), "contacts.0.friction=0.1:0.2:12", "--duration", "1 s", "--no-plots"]
+HELPED = {
+    "sweep": ["sweep", LEVER, "contacts.0.friction=0.1:0.2:12", "--duration", "1 s", "--no-plots", "-o", "study"],
+    "tolerance": ["tolerance", "desk", "--samples", "16", "--no-plots", "-o", "study"],
+}
+TOLERANCES = """
+"amplitude" = { min = "290°" }
+[tolerances]
+"torques.0.value" = { limits = "±0.5 µN·m" }
+"contacts.0.friction" = { limits = "±0.03" }
+"bodies.balance.inertia" = { limits = "±0.05 mg·cm²" }
+"bodies.lever.position.1" = { limits = "±1 µm" }
+"""
 
 
-def helped(number: int, kind: str, place: Path, usual: float) -> tuple[str, str, list[str]]:  # noqa: PLR0915 - a story
-    """One round in which a helper is killed: who, how the sweep ended, what is wrong."""
+def desk(place: Path) -> None:
+    """A scene with tolerances."""
+    shutil.copytree(LEVER, place / "desk", ignore=shutil.ignore_patterns("results"))
+    scene = place / "desk" / "scene.toml"
+    scene.write_text(scene.read_text().partition("[expect]")[0] + "[expect]" + TOLERANCES)
+
+
+def studied(place: Path, arguments: list[str]) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "watchsim", *arguments]
+    return subprocess.run(command, cwd=place, env=environment(), check=False, capture_output=True, text=True)
+
+
+def outcome(folder: Path) -> tuple[list[str], list[str]]:
+    """The rows of a study, in the order of their numbers, and its table, both without what a point took."""
+    rows = [json.loads(line) for line in (folder / "rows.jsonl").read_text().splitlines()]
+    lines = list(csv.reader(next(folder.glob("*.csv")).open()))
+    timed = lines[0].index("seconds") if "seconds" in lines[0] else len(lines[0])
+    table = [",".join(line[:timed] + line[timed + 1 :]) for line in lines]
+    return [json.dumps({**row, "seconds": 0}) for row in sorted(rows, key=lambda row: row.get("point", -1000))], table
+
+
+def helped(
+    number: int, kind: str, arguments: list[str], place: Path, usual: float, undisturbed: object
+) -> tuple[str, str, list[str]]:
+    """One round in which something of a study is killed: who, how the study ended, what is wrong."""
     rng = random.Random(f"{kind} {number}")
     shutil.rmtree(place, ignore_errors=True)
     place.mkdir()
-    arguments, cluster = [*HELPED, "-o", "study", "--workers", "2"], []
+    desk(place)
+    cluster: dict[str, subprocess.Popen[bytes]] = {}
+    more = ["--workers", "2"]
     if kind == "cluster":
-        import socket
-
         with socket.socket() as free:
             free.bind(("127.0.0.1", 0))
             address = f"tcp://127.0.0.1:{free.getsockname()[1]}"
-        cluster = [_dask("scheduler", "--host", address, "--no-dashboard"), _dask_worker(address)]
-        arguments += ["--scheduler", address]
+        cluster = {"scheduler": _dask("scheduler", "--host", address, "--no-dashboard"), "worker": _dask_worker(address)}
+        more = ["--scheduler", address]
         time.sleep(2.0)
-    process = start(arguments, place, fresh=True)
+    process = start([*arguments, *more], place, fresh=True)
     assert isinstance(process, subprocess.Popen)
     helpers: set[int] = set()
     until = time.monotonic() + rng.random() * usual
     while process.poll() is None and time.monotonic() < until:
         helpers |= _descendants(process.pid)
         time.sleep(0.02)
-    last = number % 4 == 3
-    if kind == "cluster":
-        who = "scheduler" if last else "worker"
-        cluster[0 if last else 1].kill()
-        if not last:
-            cluster.append(_dask_worker(address))
+    alive = sorted(_descendants(process.pid))
+    who = (["worker"] * 2 + ["scheduler", "study"] if kind == "cluster" else ["helper"] * 3 + ["study"])[number % 4]
+    who = "study" if who == "helper" and not alive else who
+    if who in cluster:
+        cluster[who].kill()
+        if who == "worker":
+            cluster["another worker"] = _dask_worker(address)
     else:
-        alive = sorted(_descendants(process.pid))
-        who = "sweep" if last or not alive else "helper"
-        target = process.pid if who == "sweep" else rng.choice(alive)
         with contextlib.suppress(ProcessLookupError):
-            os.kill(target, signal.SIGKILL)
-    wrong = []
+            os.kill(process.pid if who == "study" else rng.choice(alive), signal.SIGKILL)
     while process.poll() is None:
         helpers |= _descendants(process.pid)
         time.sleep(0.05)
     said = "".join(process.communicate())
-    for one in cluster:
+    for one in cluster.values():
         one.kill()
         one.wait()
-    fine = {"scheduler": (0, 2, 3), "sweep": (0, -9)}.get(who, (0,))
-    if process.returncode not in fine:
-        wrong.append(f"exit status {process.returncode}: {said}")
-    if "Traceback" in said or "Error" in said:
-        wrong.append(said)
+    fine = {"scheduler": (0, 2, 3), "study": (0, -9)}.get(who, (0,))
+    wrong = [] if process.returncode in fine else [f"exit status {process.returncode}: {said}"]
+    wrong += [said] if "Traceback" in said or "Error" in said else []
     time.sleep(0.5)
     if left := [pid for pid in helpers if Path(f"/proc/{pid}").exists() and not _is_ending(pid)]:
         wrong.append(f"orphans {left}")
+    return who, f"{who} {process.returncode}", wrong + _gone_on_with(place, arguments, process.returncode != 0, undisturbed)
+
+
+def _gone_on_with(place: Path, arguments: list[str], unfinished: bool, undisturbed: object) -> list[str]:
+    """What is wrong with the study when it is done, after --resume where it was not."""
     rows = place / "study" / "rows.jsonl"
     kept = rows.read_bytes().splitlines(keepends=True) if rows.is_file() else []
-    if process.returncode != 0:
-        again = subprocess.run(
-            [sys.executable, "-m", "watchsim", *HELPED, "-o", "study", "--workers", "1", "--resume"],
-            cwd=place, env=environment(), check=False, capture_output=True, text=True,
-        )  # fmt: skip
-        if again.returncode != 0:
-            wrong.append(f"gone on with: {again.returncode} {again.stderr}")
+    again = studied(place, [*arguments, "--workers", "1", "--resume"]) if unfinished else None
+    if again and again.returncode != 0:
+        return [f"gone on with: {again.returncode} {again.stderr}"]
     now = rows.read_bytes().splitlines(keepends=True)
-    if len(now) != 13 or now[: len(kept)] != [line for line in kept if line.endswith(b"\n")]:
-        wrong.append(f"{len(now) - 1} rows of 12; {len(kept) - 1} were there after the kill")
-    return who, f"{who} {process.returncode}", wrong
+    whole = [line for line in kept if line.endswith(b"\n")]
+    wrong = [] if now[: len(whole)] == whole else [f"{len(whole)} lines were there after the kill, and not all of them stayed"]
+    return wrong if outcome(place / "study") == undisturbed else [*wrong, "not what an undisturbed study gives"]
 
 
 def _dask(*arguments: str) -> subprocess.Popen[bytes]:
@@ -282,7 +315,8 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=70)
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--command", choices=list(COMMANDS), action="append", help="only this one; may be given several times")
-    parser.add_argument("--helpers", choices=("pool", "cluster"), help="kill helpers of a sweep instead of commands")
+    parser.add_argument("--helpers", choices=("pool", "cluster"), help="kill helpers of a study instead of commands")
+    parser.add_argument("--study", choices=tuple(HELPED), default="sweep", help="which study (default %(default)s)")
     args = parser.parse_args()
     which = getattr(signal, f"SIG{args.signal}")
     signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell may have switched it off for what runs behind
@@ -293,16 +327,17 @@ def main() -> None:
         made, place = Path(parent) / "made", Path(parent) / "place"
         made.mkdir()
         if args.helpers:
-            place.mkdir()
-            started = time.perf_counter()
-            subprocess.run(
-                [sys.executable, "-m", "watchsim", *HELPED, "-o", "study", "--workers", "2"],
-                cwd=place, env=environment(), check=True, capture_output=True,
-            )  # fmt: skip
-            usual_time = time.perf_counter() - started
+            desk(place := Path(parent) / "undisturbed")
+            for _ in range(2):  # the first one may compile
+                started = time.perf_counter()
+                done = studied(place, [*HELPED[args.study], "--workers", "2", "--force"])
+                if done.returncode != 0:
+                    raise SystemExit(done.stderr)
+            usual_time, undisturbed = time.perf_counter() - started, outcome(place / "study")
             print(f"usual: {usual_time:.1f} s", flush=True)
             for number in range(args.first, args.first + args.count):
-                name, status, wrong = helped(number, args.helpers, place, usual_time)
+                folder = Path(parent) / "place"
+                name, status, wrong = helped(number, args.helpers, HELPED[args.study], folder, usual_time, undisturbed)
                 ended[status] += 1
                 if wrong:
                     wrong_rounds += 1
