@@ -318,7 +318,7 @@ def friction_by_pair(run: Trajectory, ends: Sequence[float]) -> list[dict[str, f
     times = (rows[:-1, None] + h[:, None] * NODES).ravel()
     weights = (h[:, None] * WEIGHTS).ravel()
     found = forces(run, times)
-    taken = weights[:, None] * _powers(run, found)
+    taken = -weights[:, None] * found.tangential * slips(run, found)
     stretch = np.searchsorted(np.asarray(ends), times, side="right") - 1
     names = [pair_name(run, int(k)) for k in found.pairs]
     out: list[dict[str, float]] = [{} for _ in range(len(ends) - 1)]
@@ -330,19 +330,18 @@ def friction_by_pair(run: Trajectory, ends: Sequence[float]) -> list[dict[str, f
     return out
 
 
-def _powers(run: Trajectory, found: Forces) -> Array:
-    """What each contact takes at each time, W (n, k): the tangential force against the slip."""
+def slips(run: Trajectory, found: Forces) -> Array:
+    """How fast body A slides along t over body B at each contact, m/s (n, k); 0 where it is open."""
     q, u = run.sample(found.t)
     places, rates = frames(run.scene, run.slices, q), speeds(run.scene, run.slices, q, u)
-    powers = np.zeros(found.tangential.shape)
+    along = np.zeros(found.tangential.shape)
     for k, contact in enumerate(found.pairs):
         pair = run.pairs[int(contact)]
         held = np.isfinite(found.point[:, k, 0])
         point, normal = found.point[held, k], found.direction[held, k]
         slip = _speed(pair.body_a, places, rates, held, point) - _speed(pair.body_b, places, rates, held, point)
-        along = -normal[:, 1] * slip[:, 0] + normal[:, 0] * slip[:, 1]
-        powers[held, k] = -found.tangential[held, k] * along
-    return powers
+        along[held, k] = -normal[:, 1] * slip[:, 0] + normal[:, 0] * slip[:, 1]
+    return along
 
 
 def _speed(body: str, places: dict[str, Array], rates: dict[str, Array], held: Array, point: Array) -> Array:

@@ -43,7 +43,7 @@ class StonesUnlocked:
         stone_of = np.array([_stone(self._compiled, self._parts, contact) for contact in used.tolist()], np.int64)
         stones, first, of_stone = np.unique(stone_of[of_contact], return_index=True, return_inverse=True)
         rested = zip(stones.tolist(), starts[known][first].tolist(), strict=True)
-        sides = [_side(self._run, self._compiled, self._parts, stone, time) for stone, time in rested]
+        sides = [pallet_side(self._run, self._compiled, self._parts, stone, time) for stone, time in rested]
         found = np.full(len(starts), "", object)
         found[known] = np.array(sides, object)[of_stone]
         return found.tolist()
@@ -62,7 +62,7 @@ def _has_pallets(run: Trajectory, compiled: Compiled, parts: Roles) -> bool:
     on_spring = any(spring.body == parts.oscillator for spring in run.scene.springs) and not any(run.scene.gravity)
     both = {parts.wheel, parts.lever}
     stones = {_stone(compiled, parts, k) for k, pair in enumerate(run.pairs) if {pair.body_a, pair.body_b} == both}
-    return not on_spring and len({_side(run, compiled, parts, one, float(run.t[0])) for one in stones}) > 1
+    return not on_spring and len({pallet_side(run, compiled, parts, one, float(run.t[0])) for one in stones}) > 1
 
 
 def _stone(compiled: Compiled, parts: Roles, contact: int) -> int:
@@ -71,7 +71,7 @@ def _stone(compiled: Compiled, parts: Roles, contact: int) -> int:
     return int(p.a if compiled.owners[int(p.a)] == parts.lever else p.b)
 
 
-def _side(run: Trajectory, compiled: Compiled, parts: Roles, stone: int, time: float) -> str:
+def pallet_side(run: Trajectory, compiled: Compiled, parts: Roles, stone: int, time: float) -> str:
     """Entry where the stone lies before the line from wheel to lever, in the wheel's sense of turning."""
     assert parts.wheel and parts.lever
     x0, y0, _ = run.pose(parts.wheel, time)
