@@ -53,6 +53,9 @@ PAGES = {
             "watchsim.analysis.forces:Forces",
             "verdict",
             "watchsim.analysis.verdict_kinds:Verdict",
+            "wear",
+            "watchsim.analysis.wear:Wear",
+            "watchsim.analysis.wear:WornPlace",
         ],
     ),
     "studies": (

@@ -26,6 +26,7 @@ _HOMES = {
     "beats": "watchsim.analysis.timing",
     "forces": "watchsim.analysis.forces",
     "summary": "watchsim.analysis.summary",
+    "wear": "watchsim.analysis.wear",
     "read_results": "watchsim.results.folder",
     "write_results": "watchsim.results.folder",
     "verdict": "watchsim.analysis.verdict",
@@ -78,6 +79,7 @@ if TYPE_CHECKING:
     from watchsim.analysis.summary import summary as summary
     from watchsim.analysis.timing import beats as beats
     from watchsim.analysis.verdict import verdict as verdict
+    from watchsim.analysis.wear import wear as wear
     from watchsim.drawing.drawing import Drawing as Drawing
     from watchsim.drawing.drawing import Profile as Profile
     from watchsim.drawing.read import read as read
