@@ -26,7 +26,7 @@ from watchsim.render import style
 from watchsim.render.marks import clock
 from watchsim.render.palette import FAINT, looks
 from watchsim.render.phase_plots import name_key, names_in, shade, strong
-from watchsim.render.rows import COLUMNS, bands, distinct, reduced
+from watchsim.render.rows import COLUMNS, bands, distinct, envelope, reduced
 from watchsim.render.view import choose, dense, stretch
 from watchsim.scene.scene import Body
 from watchsim.simulation.trajectory import Array, Trajectory
@@ -36,6 +36,8 @@ USUAL = QUANTITIES[:2]
 PANEL, FOOT = 30.0, 9.0  # mm, the height of a row of panels, and room for the time below
 MANY, LOW = 24, 20.0  # so many rows, and the height of each of more
 KEY, KEY_GAP = 6.5, 1.0  # mm, where the names of phases begin, and room below them
+FILLED = 0.25  # opacity of the area between envelopes
+CROWDED = 0.3  # of a panel's width, taken by the strokes of a curve: more would make a solid block of it
 FLAT = 1e-6  # a range smaller than this part of the value (or of 1 unit) is shown as flat, not magnified
 STYLES = ("-", "--")  # of x and y
 DOT_COLUMNS = 2  # in which the values of a curve are looked at, to each dot of a picture's width
@@ -195,12 +197,16 @@ def _panel(axes: Axes, channel: Channel, quantity: str, colour: str) -> None:
 
 
 def _curve(axes: Axes, line: Line2D, x: Array, y: Array, columns: int) -> None:
-    """Draw y over x: as a line, or where its points are dense as the area that it covers; dashed ones stay lines."""
-    areas = bands(x, y, columns) if line.get_linestyle() == STYLES[0] else []
+    """Draw y over x: as a line, as its envelopes where it goes to and fro too often, or as the area that dense points cover."""
+    width = axes.bbox.width / axes.figure.dpi * style.INCH
+    areas = envelope(x, y, CROWDED * width / (2.0 * line.get_linewidth()))
+    opacity = FILLED if areas else 1.0
+    areas = areas or (bands(x, y, columns) if line.get_linestyle() == STYLES[0] else [])
     line.set_data(*(((), ()) if areas else reduced(x, y, columns)))
     for middle, low, high in areas:
         outline = np.column_stack((np.append(middle, middle[::-1]), np.append(low, high[::-1])))
-        area = Polygon(outline, color=line.get_color(), linewidth=line.get_linewidth(), zorder=line.get_zorder())
+        area = Polygon(outline, edgecolor=line.get_color(), linewidth=line.get_linewidth(), zorder=line.get_zorder())
+        area.set_facecolor((line.get_color(), opacity))
         area.set(joinstyle="round", gid=line.get_gid())
         axes.add_artist(area)  # its limits are known
 

@@ -22,11 +22,13 @@ from watchsim.analysis.phases import Phase
 from watchsim.analysis.timeline import Beat, Stage, shown_beats, title
 from watchsim.mechanism.compile import compile_scene
 from watchsim.render import style
+from watchsim.render.marks import round_below
 from watchsim.render.palette import ELSE, FAINT, FORCE, INK, PHASE_LINES, PHASES, SECOND, looks
 from watchsim.render.parts import Posed, loops_of, outline
 from watchsim.render.view import Window, dense, placed, poses
 from watchsim.scene.roles import hinged_pallets, with_anchor
 from watchsim.simulation.trajectory import Array, Trajectory
+from watchsim.units import metric
 
 SWATCH, AFTER_SWATCH, APART = 2.6, 1.0, 3.5  # mm; from one name to the next swatch
 
@@ -122,8 +124,9 @@ def spread(places: Sequence[float], least: float) -> list[float]:
     return moved if all(math.isfinite(place) for place in moved) else list(places)
 
 
-PANEL, TOP, FOOT, LEFT, RIGHT, BETWEEN = 25.0, 35.0, 3.0, 13.5, 3.0, 11.0  # mm
+PANEL, TOP, FOOT, LEFT, RIGHT, BETWEEN = 25.0, 14.5, 3.0, 13.5, 3.0, 11.0  # mm; above the panels the longest name is added
 LABEL_AT = 10.5  # mm, of the label left of its panel
+KILO = 1e3  # °/s: faster bodies have their velocity in thousands
 BEFORE, AFTER = 0.08, 0.12  # of a beat's phases: what is shown besides
 MANY = 2  # beats that are drawn one by one
 
@@ -142,12 +145,14 @@ def plot_phases(
     parts = with_anchor(run.scene)
     names = list(dict.fromkeys(name for name in (parts.wheel, parts.lever, parts.oscillator) if name))
     rows = 2 * len(names)
-    made = style.figure(width, TOP + rows * PANEL + FOOT)
+    longest = max((len(title(stage)) for beat in beats[-MANY:] for stage in beat.stages if stage.name != "locked"), default=0)
+    top = TOP + style.LETTER * style.SMALL * style.POINT * longest
+    made = style.figure(width, top + rows * PANEL + FOOT)
     style.heading(made, run.scene.title, f"t = {span[0]:.4f} s to {span[1]:.4f} s")
     wide = (width - LEFT - RIGHT - (len(columns) - 1) * BETWEEN) / len(columns)
     for c, beat in enumerate(columns):
         left = LEFT + c * (wide + BETWEEN)
-        panels = [style.panel(made, left, TOP + r * PANEL - 1.5, wide, PANEL - 5.0) for r in range(rows)]
+        panels = [style.panel(made, left, top + r * PANEL - 1.5, wide, PANEL - 5.0) for r in range(rows)]
         _column(panels, run, names, span if beat is None else around(beat, run), beat, beats, first=c == 0)
     return made
 
@@ -165,13 +170,14 @@ def _column(
     """Angle and velocity of each body over one stretch of time."""
     t, q, u, _ = dense(run, span)
     zero = span[0] if beat is None else beat.start
-    x = 1e3 * (t - zero)
+    x, shown = 1e3 * (t - zero), slice(*np.searchsorted(run.t, (beats[0].start, beats[-1].end)).tolist())
     worn = looks(run.scene)
     for k, name in enumerate(names):
         column, colour = run.slices[name].start, worn[name].line
+        fast = bool(np.degrees(np.abs(run.u[shown, column]).max()) >= KILO)  # the same in all columns
         for axes, values, unit in (
             (panels[2 * k], np.degrees(q[:, column]), f"{name} (°)"),
-            (panels[2 * k + 1], 1e-3 * np.degrees(u[:, column]), f"{name} (1000 °/s)"),
+            (panels[2 * k + 1], np.degrees(u[:, column]) / (KILO if fast else 1.0), f"{name} ({'1000 ' * fast}°/s)"),
         ):
             axes.plot(x, values, color=colour, linewidth=style.CURVE, solid_joinstyle="round", zorder=3)
             axes.set_xlim(1e3 * (span[0] - zero), 1e3 * (span[1] - zero))
@@ -196,13 +202,16 @@ def _column(
         name_above(panels[0], beat.stages, zero)
 
 
-ACROSS = {True: 7, False: 4}  # pictures in a row: on a page, in a column
+ACROSS = {True: 7, False: 4}  # pictures in a row at most: on a page, in a column
 LINE = style.LEAD * style.SMALL * style.POINT  # mm, of a caption
 GAP, TITLE, WORDS, CURVES, LEADS, TIME, ANGLES = 1.2, 5.0, 7.0, 20.0, 5.0, 9.0, 12.0  # mm
 ROOM = 0.12  # of the lever's size, around it
-TALLEST = 1.35  # of a picture's width
+TALLEST, HIGHEST = 1.35, 45.0  # of a picture's width, and mm
 ARROW = 0.30  # of a picture's width: the largest force
 SHORTEST = 0.025  # of it: a shorter arrow would be all head
+ARROWS: dict[str, Any] = {
+    "arrowstyle": "-|>,head_length=0.25,head_width=0.12", "color": FORCE, "linewidth": 1.0, "shrinkA": 0, "shrinkB": 0
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -222,26 +231,30 @@ def plot_timeline(
     ValueError where no beat was recorded whole.
     """
     beats_shown = (beats or shown_beats(run, window, rubbed=False))[-MANY:]
-    across = ACROSS[width >= style.NARROW]
     instants = [key_instants(beat) for beat in beats_shown]
-    box = _box(run, [one.t for own in instants for one in own])
+    across = min(ACROSS[width >= style.NARROW], max(map(len, instants)))
+    around = _box(run, [one.t for own in instants for one in own])
+    pushed = _pushed(run, [one for own in instants for one in own])
+    largest = max((float(np.hypot(*force.T).max(initial=0.0)) for _, force in pushed), default=0.0)
+    longest = ARROW * (around[1] - around[0]) / largest if largest > 0.0 else 0.0
+    arrows = [(points, longest * force) for points, force in pushed]
+    box = _with_arrows(around, arrows)
     wide = (width - 2.0 * style.EDGE - (across - 1) * GAP) / across
-    tall = wide * min((box[3] - box[2]) / (box[1] - box[0]), TALLEST)
+    tall = min(wide * min((box[3] - box[2]) / (box[1] - box[0]), TALLEST), HIGHEST)
     rows = [-(-len(one) // across) for one in instants]
     heights = [TITLE + count * (tall + WORDS) + LEADS + CURVES + TIME for count in rows]
     made = style.figure(width, style.HEADING + sum(heights))
     style.heading(made, run.scene.title, f"Amid each phase; arrows: contact forces on the {' and '.join(_pushed_bodies(run))}")
     posed = Posed(run.scene, compile_scene(run.scene))
-    pushed = _pushed(run, [one for own in instants for one in own])
-    largest = max((float(np.hypot(*force.T).max(initial=0.0)) for _, force in pushed), default=0.0)
-    longest = ARROW * (box[1] - box[0]) / largest if largest > 0.0 else 0.0
-    arrows = iter([(points, longest * force) for points, force in pushed])
-    top = style.HEADING
+    if largest > 0.0:
+        newtons = round_below(largest)
+        _arrow_key(made, newtons, longest * newtons / _scale(box, wide, tall))
+    drawn, top = iter(arrows), style.HEADING
     for beat, own, count, height in zip(beats_shown, instants, rows, heights, strict=True):
         words = f"{beat_name(beat)}, {beat.first} at {beat.start:.6g} s"
         _words(made, style.EDGE, top + 0.5 * TITLE - 1.0, words, weight="bold")
         under = top + TITLE + count * (tall + WORDS)
-        _pictures(made, (run, posed), [(one, *next(arrows)) for one in own], (top + TITLE, wide, tall), box, across)
+        _pictures(made, (run, posed), [(one, *next(drawn)) for one in own], (top + TITLE, wide, tall), box, across)
         _curves(made, run, beat, own, under + LEADS)
         top += height
     return made
@@ -279,6 +292,31 @@ def _box(run: Trajectory, times: Sequence[float]) -> Box:
     return tuple(1e3 * float(v) for v in (x.min() - side, x.max() + side, y.min() - side, y.max() + side))  # type: ignore[return-value]
 
 
+def _with_arrows(box: Box, arrows: Sequence[tuple[Array, Array]]) -> Box:
+    """The box with the tails of all arrows in it."""
+    tails = np.concatenate([(points - force).reshape(-1, 2) for points, force in arrows])
+    if not len(tails):
+        return box
+    air = ROOM / 3.0 * (box[1] - box[0])
+    (left, low), (right, high) = tails.min(axis=0) - air, tails.max(axis=0) + air
+    return min(box[0], float(left)), max(box[1], float(right)), min(box[2], float(low)), max(box[3], float(high))
+
+
+def _scale(box: Box, wide: float, tall: float) -> float:
+    """Millimetres of the movement to one of the picture: the same both ways, and all of the box in sight."""
+    return max((box[1] - box[0]) / wide, (box[3] - box[2]) / tall)
+
+
+def _arrow_key(made: Figure, newtons: float, length: float) -> None:
+    """Which force an arrow of this length (mm) stands for, at the upper right."""
+    width, height = style.size_mm(made)
+    axes = style.panel(made, width - style.EDGE - length, 7.0, length, 3.0)
+    axes.set_axis_off()
+    axes.annotate("", (1.0, 0.5), (0.0, 0.5), arrowprops=ARROWS)
+    look: dict[str, Any] = {"fontsize": style.SMALL, "color": INK, "ha": "right", "va": "center"}
+    made.text((width - style.EDGE - length - 1.0) / width, 1.0 - 8.5 / height, metric(newtons, "N", 1), **look)
+
+
 def _pictures(
     made: Figure,
     drawn: tuple[Trajectory, Posed],
@@ -290,7 +328,7 @@ def _pictures(
     """A row of pictures, or two, each with what happens."""
     run, posed = drawn
     top, wide, tall = place
-    scale = max((box[1] - box[0]) / wide, (box[3] - box[2]) / tall)  # the same both ways, and all of the box in sight
+    scale = _scale(box, wide, tall)
     for k, (one, points, force) in enumerate(shown):
         left, up = style.EDGE + (k % across) * (wide + GAP), top + (k // across) * (tall + WORDS)
         axes = style.panel(made, left, up, wide, tall)
@@ -309,12 +347,10 @@ def _pictures(
 
 def _arrows(axes: Axes, points: Array, arrows: Array) -> None:
     """Forces in the picture's mm, their tips where they press."""
-    head = "-|>,head_length=0.25,head_width=0.12"
-    look: dict[str, Any] = {"arrowstyle": head, "color": FORCE, "linewidth": 1.0, "shrinkA": 0, "shrinkB": 0}
     for point, way in zip(points, arrows, strict=True):
         if np.hypot(*way) < SHORTEST * abs(np.subtract(*axes.get_xlim())):
             continue
-        arrow = axes.annotate("", point, point - way, arrowprops=look, zorder=6, annotation_clip=True)
+        arrow = axes.annotate("", point, point - way, arrowprops=ARROWS, zorder=6, annotation_clip=True)
         if arrow.arrow_patch is not None:
             arrow.arrow_patch.set_clip_path(axes.patch)
 

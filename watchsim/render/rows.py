@@ -2,8 +2,8 @@
 
 In every column of dots the first, the last, the least and the largest value: a line through them covers the very same dots
 (Jugel et al., M4: a visualization-oriented time series data aggregation, VLDB 2014), and no spike is lost, be it one sample
-long. `thinned` does so for a record of millions of rows, `reduced` for one curve, `bands` for areas, `distinct` for curves that
-are no functions. `kept_rows` serves players instead: it leaves out the rows that interpolation brings back.
+long. `thinned` does so for a record of millions of rows, `reduced` for one curve, `bands` for areas, `envelope` for what goes to and
+fro too often to be seen, `distinct` for curves that are no functions. `kept_rows` serves players instead: it leaves out the rows that interpolation brings back.
 """
 
 from __future__ import annotations
@@ -68,6 +68,24 @@ def bands(x: Array, y: Array, columns: int = COLUMNS) -> list[tuple[Array, Array
     known = np.isfinite(low)
     edges = np.flatnonzero(np.diff(known.astype(np.int8), prepend=0, append=0))
     return [(middle[i:j], low[i:j], high[i:j]) for i, j in edges.reshape(-1, 2).tolist()]
+
+
+FEWEST = 20  # columns of an envelope
+HOLDS = 3.0  # of the longest time between two crossings of the middle: a full swing lies in it, wherever it begins
+
+
+def envelope(x: Array, y: Array, swings: float) -> list[tuple[Array, Array, Array]]:
+    """As `bands`, in columns that each hold a full swing, of a curve that goes to and fro all along and more than so often.
+
+    Empty for any other curve, and for one with gaps.
+    """
+    above = y > 0.5 * (y.min() + y.max())  # never, where there is a gap
+    crossings = x[1:][above[1:] != above[:-1]]
+    if not len(crossings) > 2.0 * swings:
+        return []
+    longest = float(np.diff(crossings, prepend=x[0], append=x[-1]).max())
+    columns = int((x[-1] - x[0]) / (HOLDS * longest))
+    return bands(x, y, columns) if columns >= FEWEST else []
 
 
 def distinct(x: Array, y: Array, cells: int = COLUMNS) -> tuple[Array, Array]:
