@@ -33,6 +33,7 @@ from watchsim.render.kinematics_plot import Kinematics, plot_kinematics, write_p
 from watchsim.render.marks import clock
 from watchsim.render.palette import looks
 from watchsim.render.parts import parts
+from watchsim.render.rows import envelope
 from watchsim.render.style import passing
 from watchsim.scene.scene import Body, Scene
 
@@ -513,3 +514,41 @@ def test_a_body_has_one_colour_in_plot_and_movie():
     for name in run.slices:
         (hue, _, grey), (other, _, pale) = (rgb_to_hsv(to_rgb(colour)) for colour in (shown[name], filled[name]))
         assert abs(hue - other) < 0.08 and grey < pale
+
+
+def test_arrows_of_forces_lie_in_their_pictures_and_have_a_scale(run: ws.Trajectory) -> None:
+    figure = ws.plot_timeline(run)
+    arrows = [(axes, one) for axes in figure.axes for one in axes.texts if getattr(one, "arrow_patch", None) is not None]
+    (key,) = [one for one in arrows if not one[0].axison]
+    for axes, arrow in arrows:
+        for x, y in (arrow.xy, arrow.xyann):
+            assert axes.get_xlim()[0] <= x <= axes.get_xlim()[1] and axes.get_ylim()[0] <= y <= axes.get_ylim()[1]
+    # The longest arrow by the scale is the largest of the forces on the lever, worked out alone.
+    instants = [one.t for beat in shown_beats(run, rubbed=False)[-2:] for one in key_instants.key_instants(beat)]
+    found = ws.forces(run, instants)
+    on_lever = [k for k, contact in enumerate(found.pairs) if "lever" in str(run.pairs[int(contact)])]
+    largest = float(np.hypot(*np.nan_to_num(found.on_a[:, on_lever]).reshape(-1, 2).T).max())
+    number, unit = next(text.get_text() for text in figure.texts if text.get_text().endswith("N")).split()
+    dots = [math.dist(*axes.transData.transform((arrow.xy, arrow.xyann))) for axes, arrow in arrows]
+    of_key = next(length for length, one in zip(dots, arrows, strict=True) if one is key)
+    newtons = float(number) * {"N": 1.0, "mN": 1e-3, "µN": 1e-6}[unit]
+    assert newtons * max(dots) / of_key == pytest.approx(max(largest, newtons), rel=1e-3)
+
+
+def test_few_pictures_use_the_width_and_slow_bodies_have_degrees_per_second() -> None:
+    run = ws.simulate(ws.load(ws.profiles_dir() / "graham"), duration=4.0)
+    figure = ws.plot_timeline(run)
+    right = max(axes.get_position().x1 for axes in figure.axes if not axes.get_xticks().size)
+    assert right > 0.98
+    labels = [axes.get_ylabel() for axes in ws.plot_phases(run).axes]
+    assert "pendulum (°/s)" in labels
+    assert ws.verdict(run).message is None or "watch" not in ws.verdict(run).message
+
+
+def test_what_goes_to_and_fro_too_often_is_drawn_as_its_envelope() -> None:
+    t = np.linspace(0.0, 100.0, 40_001)
+    swell = 1.0 + 0.5 * np.sin(0.06 * t)
+    ((x, low, high),) = envelope(t, swell * np.sin(math.tau * 4.0 * t), 100.0)
+    assert np.allclose(high, np.interp(x, t, swell), atol=0.02) and np.allclose(low, -high, atol=0.02)
+    assert envelope(t, swell * np.sin(math.tau * 0.1 * t), 100.0) == []
+    assert envelope(t, np.where(t < 50.0, np.sin(math.tau * 4.0 * t), 0.0), 100.0) == []  # rests half of the time

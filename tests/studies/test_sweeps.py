@@ -394,12 +394,12 @@ def words(figure):
 
 def test_a_curve_in_usual_units_with_what_failed():
     found = words(plot_sweep(made(FRICTION)))
-    assert "contacts.0.friction" in found and "amplitude (°)" in found and "knocks" in found
+    assert "contact 1 friction" in found and "amplitude (°)" in found and "knocks" in found
 
 
 def test_a_family_and_a_map():
     figure = plot_sweep(made(TORQUE, DRAWING))
-    assert "torques.0.value (µN·m)" in words(figure)
+    assert "torque 1 value (µN·m)" in words(figure)
     assert [text.get_text() for text in figure.legends[0].get_texts()] == ["a.dxf", "b.dxf"]
     other = Axis("springs.0.stiffness", tuple(1e-6 * (1.0 + 0.1 * i) for i in range(8)), "N·m/rad", "µN·m/rad")
     assert "grey: knocks" in words(plot_sweep(made(FRICTION, other)))

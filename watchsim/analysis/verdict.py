@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -453,7 +454,12 @@ def verdict(run: Trajectory, found: Beats | None = None) -> Verdict:
     if not swings(run.scene):
         return NOTHING
     watch = watch_of(run, beats(run) if found is None else found)
-    return NOTHING if watch is None else _judged(watch)
+    if watch is None:
+        return NOTHING
+    judged = _judged(watch)
+    if judged.message and watch.oscillator not in {spring.body for spring in run.scene.springs}:  # a pendulum
+        return replace(judged, message=judged.message.replace("the watch", "the clock"))
+    return judged
 
 
 def _judged(watch: Watch) -> Verdict:

@@ -161,9 +161,10 @@ def _shown(scene: Scene) -> list[str]:
 
 
 def plots(run: Trajectory, panels: Kinematics | None = None) -> dict[str, Draw]:
-    """Kinematic plots: all that was recorded, and the last beats; in the `panels` of `empty_panels`, where there are any."""
+    """Kinematic plots of all that was recorded and of its last part, in the `panels` of `empty_panels` where there are any."""
     if len(run.t) < 2:
         return {}
+    from watchsim.scene.roles import keeps_time
 
     @functools.cache
     def shown() -> Kinematics:
@@ -180,7 +181,8 @@ def plots(run: Trajectory, panels: Kinematics | None = None) -> dict[str, Draw]:
 
         return draw
 
-    return {"plots/kinematics.png": plot(lambda: None), "plots/last_beats.png": plot(lambda: last_beats(run))}
+    last = "last_beats" if keeps_time(run.scene) else "last_stretch"
+    return {"plots/kinematics.png": plot(lambda: None), f"plots/{last}.png": plot(lambda: whole_beats(run))}
 
 
 def last_beats(run: Trajectory, share: float = 1.5) -> tuple[float, float]:
@@ -192,6 +194,23 @@ def last_beats(run: Trajectory, share: float = 1.5) -> tuple[float, float]:
     hertz = frequency(run.scene) if keeps_time(run.scene) else None
     length = share / hertz if hertz else 0.1 * (end - start)
     return max(start, end - length), end
+
+
+def whole_beats(run: Trajectory) -> tuple[float, float]:
+    """The same, moved back by less than a half swing to the last turning point, where the phases of all beats are known."""
+    from watchsim.analysis.timing import beats
+    from watchsim.render.view import recorded
+    from watchsim.scene.roles import keeps_time
+
+    start, end = last_beats(run)
+    if not keeps_time(run.scene) or not len(found := beats(run)):
+        return start, end
+    rest = end - float(found.end[-1])
+    return (
+        (start - rest, end - rest)
+        if 0.0 <= rest < (end - start) / 3.0 and start - rest >= recorded(run)[-1][0]
+        else (start, end)
+    )
 
 
 def filmed(run: Trajectory, slow: float) -> tuple[tuple[float, float], float]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -107,19 +107,26 @@ def _grid(x_axis: _Axis, y_axis: _Axis) -> list[Markup]:
     return parts
 
 
-def bars(entries: Sequence[tuple[str, float, str]], description: str) -> Markup:
-    """A labelled bar for each (name, share of 1, value in words); negative shares run to the left of the zero line."""
+SERIES = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#d55e00", "#56b4e9", "#8c7a00", "#7a7a7a")  # of page.css, in light
+
+
+def bars(entries: Sequence[tuple[str, float, str]], description: str, colours: Mapping[str, str]) -> Markup:
+    """A labelled bar for each (name, share of 1, value in words); negative shares run to the left of the zero line.
+
+    `colours` by name are some of SERIES; other names are grey.
+    """
     row, names, room = 30.0, 205.0, WIDTH - 205.0 - 150.0
     low, high = min(0.0, *(share for _, share, _ in entries)), max(1e-9, *(share for _, share, _ in entries))
     zero = names - room * low / (high - low)
     parts: list[Markup] = []
     for k, (name, share, value) in enumerate(entries):
+        colour = SERIES.index(colours.get(name, SERIES[-1]))
         y, width = row * k, room * abs(share) / (high - low)
         left = zero if share >= 0.0 else zero - width
         size = {"width": f"{max(width, 0.8):.2f}", "height": row - 10}
         parts += (
             element("text", name, x=names - 8, y=y + 0.5 * row, dy="0.34em", text_anchor="end"),
-            element("rect", x=f"{left:.2f}", y=y + 5, **size, rx=2, class_=f"s{k % 8}"),
+            element("rect", x=f"{left:.2f}", y=y + 5, **size, rx=2, class_=f"s{colour}"),
             element("text", value, x=f"{zero + (width if share >= 0 else 0) + 7:.2f}", y=y + 0.5 * row, dy="0.34em"),
         )
     picture = element("svg", *parts, viewBox=f"0 0 {WIDTH:g} {row * len(entries):g}", role="img", aria_label=description)

@@ -18,6 +18,7 @@ from watchsim.escapement.measure import measure
 from watchsim.pages.charts import Dots, bars, scatter, strip
 from watchsim.pages.html import Content, Markup, element, joined, section, table
 from watchsim.render.marks import decimals_for
+from watchsim.render.palette import ENERGIES
 from watchsim.scene.roles import swings
 from watchsim.scene.scene import Scene
 from watchsim.simulation.trajectory import Array, Trajectory
@@ -317,7 +318,7 @@ def _energy(run: Trajectory) -> Iterator[Markup]:
     words = "Where the energy went: " + ", ".join(f"{cause} {100.0 * share:.1f} %" for cause, share, _ in entries)
     closes = f"The account closes to {run.energy.get('residual_relative', 0.0):.1g} of it."
     note = f"{metric(shares.supplied, 'J', 4)} went in{power}. {closes}"
-    yield section("energy", "Energy", element("p", note, class_="note"), bars(entries, words))
+    yield section("energy", "Energy", element("p", note, class_="note"), bars(entries, words, ENERGIES))
 
 
 def _judgement(numbers: Mapping[str, Any]) -> Iterator[Markup]:

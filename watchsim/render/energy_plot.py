@@ -23,7 +23,7 @@ from watchsim.analysis.timeline import Beat, Stage, shown_beats
 from watchsim.analysis.timeline import title as phase_title
 from watchsim.mechanism.compile import compile_scene
 from watchsim.render import style
-from watchsim.render.palette import FAINT, INK
+from watchsim.render.palette import ENERGIES, FAINT, INK
 from watchsim.render.phase_plots import bands, beat_name
 from watchsim.scene.roles import roles
 from watchsim.simulation.trajectory import Array, Trajectory, frames
@@ -32,7 +32,6 @@ from watchsim.units import metric
 LEFT, RIGHT, ROW, OVER, UNDER, KEY = 27.0, 4.0, 5.0, 6.0, 9.0, 4.0  # mm
 WORDS = 27.0  # mm, beside a bar
 PARTS = ("stored", "damping", "friction", "impacts")  # of what is supplied
-COLOURS = dict(zip((*PARTS, "given back to the drive"), style.SERIES, strict=False))
 HATCHES = {"friction": "////", "impacts": "xxxx"}
 MANY = 2  # beats
 
@@ -85,7 +84,7 @@ def _whole(axes: Axes, went: dict[str, float], supplied: float) -> None:
     style.dress(axes, grid="x")
     names = list(went)
     values = [100.0 * went[name] for name in names]
-    colours = [COLOURS.get(name, FAINT) for name in names]
+    colours = [ENERGIES.get(name, FAINT) for name in names]
     bars = axes.barh(range(len(names)), values, height=0.66, color=colours, edgecolor="white", linewidth=0.0)
     for bar, name, value in zip(bars, names, values, strict=True):
         bar.set_gid(f"energy {name}")
@@ -123,7 +122,7 @@ def _phases(axes: Axes, stages: list[Stage], reach: float) -> None:
         for name, value in _parts(stage).items():
             up = value >= 0.0
             bar = axes.barh(
-                k, factor * value, left=factor * ends[up], height=0.66, color=COLOURS[name], gid=f"energy {k} {name}",
+                k, factor * value, left=factor * ends[up], height=0.66, color=ENERGIES[name], gid=f"energy {k} {name}",
                 hatch=HATCHES.get(name), edgecolor="white", linewidth=0.0,
             )  # fmt: skip
             bar[0].set_gid(f"energy {phase_title(stage)} {name}")
@@ -142,7 +141,7 @@ def _phases(axes: Axes, stages: list[Stage], reach: float) -> None:
 def _key(made: Figure, axes: Axes, top: float) -> None:
     """What the parts of the bars stand for, above the first panel of phases."""
     handles: list[tuple[Any, str]] = [
-        (Patch(facecolor=COLOURS[name], hatch=HATCHES.get(name), edgecolor="white", linewidth=0.0), name) for name in PARTS
+        (Patch(facecolor=ENERGIES[name], hatch=HATCHES.get(name), edgecolor="white", linewidth=0.0), name) for name in PARTS
     ]
     handles.append((Line2D([], [], color=INK, linewidth=1.2), "work of the drive"))
     width, height = style.size_mm(made)

@@ -16,6 +16,7 @@ from typing import IO
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
@@ -206,7 +207,7 @@ def _curve(axes: Axes, line: Line2D, x: Array, y: Array, columns: int) -> None:
     for middle, low, high in areas:
         outline = np.column_stack((np.append(middle, middle[::-1]), np.append(low, high[::-1])))
         area = Polygon(outline, edgecolor=line.get_color(), linewidth=line.get_linewidth(), zorder=line.get_zorder())
-        area.set_facecolor((line.get_color(), opacity))
+        area.set_facecolor(to_rgba(line.get_color(), opacity))
         area.set(joinstyle="round", gid=line.get_gid())
         axes.add_artist(area)  # its limits are known
 

@@ -36,6 +36,13 @@ PHASES = {  # of a beat; pale, to lie behind curves, and distinct for every kind
     "recoil": "#a6cee4",  # of an anchor's wheel, where a lever unlocks
 }
 SECOND, ELSE = "#66c5ab", "#eeeeee"  # an impulse that follows another; any other phase
+ENERGIES = {  # where energy goes, on plots and pages: Okabe and Ito's colours
+    "stored": "#0072b2",
+    "damping": "#d55e00",
+    "friction": "#009e73",
+    "impacts": "#cc79a7",
+    "given back to the drive": "#e69f00",
+}
 PHASE_LINES = {  # the same for curves: Okabe and Ito's colours
     "unlock": "#0072b2",
     "catch-up": "#e69f00",

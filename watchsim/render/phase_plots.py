@@ -246,9 +246,6 @@ def plot_timeline(
     made = style.figure(width, style.HEADING + sum(heights))
     style.heading(made, run.scene.title, f"Amid each phase; arrows: contact forces on the {' and '.join(_pushed_bodies(run))}")
     posed = Posed(run.scene, compile_scene(run.scene))
-    if largest > 0.0:
-        newtons = round_below(largest)
-        _arrow_key(made, newtons, longest * newtons / _scale(box, wide, tall))
     drawn, top = iter(arrows), style.HEADING
     for beat, own, count, height in zip(beats_shown, instants, rows, heights, strict=True):
         words = f"{beat_name(beat)}, {beat.first} at {beat.start:.6g} s"
@@ -257,6 +254,9 @@ def plot_timeline(
         _pictures(made, (run, posed), [(one, *next(drawn)) for one in own], (top + TITLE, wide, tall), box, across)
         _curves(made, run, beat, own, under + LEADS)
         top += height
+    if largest > 0.0:
+        newtons = round_below(largest)
+        _arrow_key(made, newtons, longest * newtons / _scale(box, wide, tall))
     return made
 
 

@@ -2,8 +2,9 @@
 
 In every column of dots the first, the last, the least and the largest value: a line through them covers the very same dots
 (Jugel et al., M4: a visualization-oriented time series data aggregation, VLDB 2014), and no spike is lost, be it one sample
-long. `thinned` does so for a record of millions of rows, `reduced` for one curve, `bands` for areas, `envelope` for what goes to and
-fro too often to be seen, `distinct` for curves that are no functions. `kept_rows` serves players instead: it leaves out the rows that interpolation brings back.
+long. `thinned` does so for a record of millions of rows, `reduced` for one curve, `bands` for areas, `envelope` for what goes
+to and fro too often to be seen, `distinct` for curves that are no functions. `kept_rows` serves players instead: it leaves out
+the rows that interpolation brings back.
 """
 
 from __future__ import annotations

@@ -18,7 +18,7 @@ from matplotlib.transforms import blended_transform_factory
 from watchsim.render import style
 from watchsim.render.palette import FAINT, GRID, INK
 from watchsim.render.style import SERIES
-from watchsim.studies.axes import Axis
+from watchsim.studies.axes import Axis, in_words
 from watchsim.studies.fit import Fit
 from watchsim.studies.goals import Better
 from watchsim.studies.point import Output
@@ -139,7 +139,7 @@ def output_label(output: Output) -> str:
 
 
 def axis_label(axis: Axis) -> str:
-    return f"{axis.key} ({axis.usual})" if axis.usual else axis.key
+    return f"{in_words(axis.key)} ({axis.usual})" if axis.usual else in_words(axis.key)
 
 
 def usual_value(axis: Axis, value: Any) -> Any:
@@ -212,7 +212,7 @@ def plot_sensitivity(found: Sensitivity, width: float = style.FULL) -> Figure:
     made = style.figure(width, rows * (BAR * max(len(shown), 2) + AROUND_BARS), layout="constrained")
     panels = made.subplots(rows, across, sharey=True, squeeze=False).flat
     made.suptitle(f"{style.cut(found.title)}: what matters", x=0.01, ha="left", fontsize=style.TITLE, weight="bold", color=INK)
-    names = [f"{effect.quantity.key}, +{effect.quantity.change_words}" for effect in shown]
+    names = [f"{in_words(effect.quantity.key)}, +{effect.quantity.change_words}" for effect in shown]
     # A panel's width is known only when it is laid out; before, all are alike beside the names.
     wide = (width - LETTERS * max(map(len, names), default=0)) / across
     for axes, output in zip(panels, found.outputs, strict=True):

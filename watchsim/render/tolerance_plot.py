@@ -13,6 +13,7 @@ from watchsim.render import style
 from watchsim.render.palette import FAINT, GRID, INK
 from watchsim.render.study_plot import output_label
 from watchsim.scene.scene import Scene
+from watchsim.studies.axes import in_words
 from watchsim.studies.point import OUTPUTS, Output
 from watchsim.studies.sampling import deviation
 from watchsim.studies.study_report import WHETHER
@@ -93,7 +94,7 @@ def _bars(axes: Axes, label: str, each: tuple[Contribution, ...], explained: flo
     """First-order and, paler, total indices; rank correlations where inputs are correlated."""
     ranks = each[0].total is None
     shown = [one for one in each if ranks or (one.total or 0.0) >= LEAST][:MOST_BARS]
-    names = [short_name(one.key) for one in shown]
+    names = [in_words(one.key) for one in shown]
     totals = np.array([abs(one.rank) if ranks else one.total for one in shown], float)
     firsts = np.array([0.0 if one.first is None else one.first for one in shown])
     places = np.arange(len(shown))
@@ -107,11 +108,6 @@ def _bars(axes: Axes, label: str, each: tuple[Contribution, ...], explained: flo
     axes.set_xlabel(known, fontsize=style.SMALL)
     style.ticks(axes.xaxis, 4)
     style.dress(axes, grid="x")
-
-
-def short_name(key: str) -> str:
-    """A dotted path without what everybody knows."""
-    return key.removeprefix("design.").removeprefix("bodies.").replace(".adjust.", ".").replace("_", " ")
 
 
 def _scatter(axes: Axes, study: ToleranceStudy, samples: Samples, outputs: list[Output]) -> None:
@@ -168,10 +164,10 @@ def _values(study: ToleranceStudy, samples: Samples, name: str) -> tuple[np.ndar
     factor = known_unit(one.unit).factor
     unit = f" ({one.unit})" if one.unit else ""
     if len(places) > 1:
-        return np.abs(samples.deviations[:, places]).mean(axis=1) / factor, f"{short_name(name)}, mean error{unit}"
+        return np.abs(samples.deviations[:, places]).mean(axis=1) / factor, f"{in_words(name)}, mean error{unit}"
     big = one.dimension.usual[1] if one.unit == "µm" and abs(one.nominal) > 1e-4 else one.unit
     unit = f" ({big})" if big else ""
-    return (one.nominal + samples.deviations[:, places[0]]) / known_unit(big).factor, f"{short_name(name)}{unit}"
+    return (one.nominal + samples.deviations[:, places[0]]) / known_unit(big).factor, f"{in_words(name)}{unit}"
 
 
 ROW, AROUND = 7.5, 16.0  # mm, of a tolerance, and of the title
@@ -193,7 +189,7 @@ def plot_limits(scene: Scene, width: float = style.FULL) -> Figure:
         for end in (-1.0, 1.0):
             axes.plot([end, end], [row - 0.4, row + 0.4], color=INK, linewidth=style.CURVE)
         words = {"fontsize": style.SMALL, "color": INK, "va": "center"}
-        axes.text(-1.45, row, f"{short_name(one.key)}   {one.shown(one.nominal)}", ha="right", **words)  # type: ignore[arg-type]
+        axes.text(-1.45, row, f"{in_words(one.key)}   {one.shown(one.nominal)}", ha="right", **words)  # type: ignore[arg-type]
         axes.text(1.45, row, one.words, ha="left", **words)  # type: ignore[arg-type]
     axes.set_ylim(count - 0.5, -0.5)
     axes.set_xlim(-1.35, 1.35)

@@ -192,7 +192,7 @@ FAILURE = "lcp_failure.json"  # only where the solver gave up on a complementari
 PICTURES = ("movie.mp4", "movie.gif", "tick.wav", "report.html", "import.png")
 LATER = ("beats.csv", "phases.csv", "report.txt", *PICTURES)
 OURS = frozenset((SUMMARY, LOCK, TRAJECTORY, EVENTS, STATE, FAILURE, *LATER))
-PLOTS = re.compile(r"(plots|drawings|plots/(kinematics|last_beats|tape)\.(png|svg|pdf))")
+PLOTS = re.compile(r"(plots|drawings|plots/(kinematics|last_beats|last_stretch|tape)\.(png|svg|pdf))")
 
 Extra = Mapping[str, str | bytes | Callable[[Path], object]]
 

@@ -46,6 +46,22 @@ class Axis:
         return all(not isinstance(value, str) for value in self.values)
 
 
+PLACES = ("x", "y")
+
+
+def in_words(key: str) -> str:
+    """A dotted path as it is said: "bodies.wheel.position.1" is "wheel position y", "torques.0.value" is "torque 1 value"."""
+    said: list[str] = []
+    for part in key.split("."):
+        if not part.isdigit():
+            said += [] if part == "adjust" or (not said and part in ("design", "bodies")) else [part.replace("_", " ")]
+        elif said and said[-1] == "position" and int(part) < len(PLACES):
+            said.append(PLACES[int(part)])
+        elif said:
+            said[-1] = f"{said[-1].removesuffix('s')} {int(part) + 1}"
+    return " ".join(said)
+
+
 def slug(unit: str) -> str:
     """A unit as the end of a column's name: "N·m/rad" is "N_m_per_rad"."""
     plain = unit.replace("·", "_").replace("/", "_per_").replace("²", "2").replace("³", "3").replace("°", "deg")
