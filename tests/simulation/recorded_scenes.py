@@ -114,7 +114,7 @@ def nudged(scene: Scene, share: float, seed: int) -> Scene:
 def run_of(short: Short) -> Trajectory:
     """As the first run of a process: no cell is known from another run."""
     scene, duration, how = short
-    pair_cache._store.clear()
+    pair_cache.forget()
     return simulate(scene, duration, **how)
 
 
