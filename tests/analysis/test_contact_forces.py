@@ -341,5 +341,5 @@ def test_many_instants_are_seen_one_by_one(contacts: list[int]) -> None:
 def test_what_a_mechanism_knows_of_its_contacts() -> None:
     """Friction by the contact declared, mobilities and dry friction by coordinate."""
     made = Mechanism(compile_scene(scene()))
-    assert made.friction.tolist() == [0.13] * 8 and made.mobility == pytest.approx([1 / 2e-9, 1 / 3e-9], rel=1e-12)
+    assert made.laws.friction.tolist() == [0.13] * 8 and made.mobility == pytest.approx([1 / 2e-9, 1 / 3e-9], rel=1e-12)
     assert made.dry.tolist() == [0.0, 5e-8] and made.prescribed.tolist() == [False, False]

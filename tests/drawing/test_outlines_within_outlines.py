@@ -407,4 +407,7 @@ def test_what_is_said_of_circles_is_where_they_are() -> None:
     square = tuple(Line(*a, *b) for a, b in pairwise([(0.0, 0.0), (1e-3, 0.0), (1e-3, 1e-3), (0.0, 0.0)]))
     loops = [Loop(THIRDS, layer="rim"), Loop(square), Loop((RIGHT, LEFT), layer="bore", hole=True)]
     where = {"x_mm": 1.0, "y_mm": 2.0, "radius_mm": 5.0}
-    assert circle_reports(loops) == [{"layer": "rim", **where, "hole": False}, {"layer": "bore", **where, "hole": True}]
+    assert circle_reports(loops) == [
+        {"layer": name, **where, "hole": hole, "sides": 0, "deviation_um": 0.0}
+        for name, hole in (("rim", False), ("bore", True))
+    ]

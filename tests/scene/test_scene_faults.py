@@ -391,7 +391,8 @@ missing: inner, outer, turns. Write e.g. draw = { inner = "0.5 mm", outer = "2.8
 [[springs]] | [springs] | springs | write [[springs]] with double brackets: there can be several.
 [[springs]] | [[sprngs]] | sprngs | unknown section. Did you mean "springs"?
 friction = 0.12 | lift_angle = "50°" | contacts.0.lift_angle | unknown key. It belongs under [timegrapher].
-motion = "fixed" | motion = "fixed"; friction = 0.1 | bodies.banking.friction | unknown key. It belongs under [[contacts]].
+motion = "fixed" | motion = "fixed"; friction = 0.1 | bodies.banking.friction | \
+unknown key. It belongs under [[bearings]] or [[contacts]].
 [scene] | title = "x"; [scene] | title | unknown section. It belongs under [scene].
 [timegrapher] | [timegrapher]; frequency = "7 Hz" | timegrapher.frequency = "7 Hz" | \
 the oscillator makes small swings at 4 Hz (28800 vph), more than 10 % off: look at mass, inertia and spring.

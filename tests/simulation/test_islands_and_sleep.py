@@ -177,7 +177,9 @@ def test_impacts_elsewhere_do_not_push_what_rolls() -> None:
     assert run.counts["impacts"] > 5
     own = [k for k, pair in enumerate(run.pairs) if "rolling" in (pair.body_a, pair.body_b)]
     assert not np.isin(run.events["contact"][run.events["t"] > 0.0], own).any()
-    assert np.abs(run.u[:, run.slices["rolling"]] / [0.3, 1.0, 0.3 / R] - [1.0, 0.0, -1.0]).max() < 2e-15
+    assert (
+        np.abs(run.u[:, run.slices["rolling"]] / [0.3, 1.0, 0.3 / R] - [1.0, 0.0, -1.0]).max() < 1e-14
+    )  # rounding of rows between its own
 
 
 # Do bodies come to rest by friction, stay at rest, and move again when they must?

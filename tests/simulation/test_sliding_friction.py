@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from simulation.moving_scenes import box, ground
 
 import watchsim as ws
-from tests.simulation.moving_scenes import box, ground
 from watchsim.scene.errors import SceneError
 from watchsim.scene.forces import Contact, LineSpring, Side, SlipLaw
 from watchsim.scene.scene import Body, Prescribed, Scene
