@@ -171,15 +171,21 @@ def test_islands_are_the_connected_sets() -> None:
 
 
 def test_impacts_elsewhere_do_not_push_what_rolls() -> None:
-    """A disc rolls on undisturbed, without any event of its own, while another one bounces beside it."""
+    """A disc rolls on undisturbed, without any event of its own, while another one bounces beside it: also where they could
+    meet, and so have the same steps. Where they cannot, it moves to the last bit as it does alone."""
     rolling = dataclasses.replace(disc("rolling", 0.0), velocity=(0.3, 0.0, -0.3 / R))
-    run = simulate(on_ground(rolling, disc("bouncing", 1.0, height=0.02)), 0.5)
-    assert run.counts["impacts"] > 5
-    own = [k for k, pair in enumerate(run.pairs) if "rolling" in (pair.body_a, pair.body_b)]
-    assert not np.isin(run.events["contact"][run.events["t"] > 0.0], own).any()
-    assert (
-        np.abs(run.u[:, run.slices["rolling"]] / [0.3, 1.0, 0.3 / R] - [1.0, 0.0, -1.0]).max() < 1e-14
-    )  # rounding of rows between its own
+    apart = on_ground(rolling, disc("bouncing", 1.0, height=0.02))
+    joined = dataclasses.replace(apart, contacts=(*apart.contacts, *touching("rolling", "bouncing")))
+    runs = [simulate(scene, 0.5) for scene in (joined, apart)]
+    for run in runs:
+        assert run.counts["impacts"] > 5
+        own = [k for k, pair in enumerate(run.pairs) if "rolling" in (pair.body_a, pair.body_b)]
+        assert not np.isin(run.events["contact"][run.events["t"] > 0.0], own).any()
+    one_system = runs[0].u[:, runs[0].slices["rolling"]]
+    assert np.abs(one_system / [0.3, 1.0, 0.3 / R] - [1.0, 0.0, -1.0]).max() < 2e-15
+    alone = simulate(on_ground(rolling), 0.5)
+    for name in ("end_q", "end_u"):
+        assert np.array_equal(getattr(runs[1], name)[runs[1].slices["rolling"]], getattr(alone, name))
 
 
 # Do bodies come to rest by friction, stay at rest, and move again when they must?

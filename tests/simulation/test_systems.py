@@ -96,8 +96,7 @@ def test_what_is_counted_does_not_depend_on_what_is_recorded() -> None:
     whole = together()
     for keep in ("events", "statistics"):
         run = together(keep)
-        for name in ("events_by_kind", "half_swings", "ticks", "late"):
-            assert run.sums[name] == whole.sums[name]
+        assert run.sums == whole.sums
         assert run.counts | {"cells_asked": 0} == whole.counts | {"cells_asked": 0} and run.energy == whole.energy
         assert np.array_equal(run.end_q, whole.end_q)
 
@@ -111,6 +110,16 @@ def test_a_window_holds_the_rows_of_the_whole_run() -> None:
     assert np.array_equal(run.q, whole.q[first - 1 : last + 2]) and np.array_equal(run.u, whole.u[first - 1 : last + 2])
 
 
+@pytest.mark.parametrize("keep", ["all", "statistics"])
+def test_how_fast_the_machine_is_changes_no_bit(keep: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Rows are merged whenever a slice of time on the clock on the wall is over."""
+    monkeypatch.setattr("watchsim.simulation.runner.SLICE_WALL", 1e-3)
+    run, whole = simulate(levers(), DURATION, record=keep), together(keep)
+    for name in ("t", "q", "u", "a", "events", "end_q", "end_u"):
+        assert np.array_equal(getattr(run, name), getattr(whole, name)), name
+    assert (run.sums, run.energy, run.counts) == (whole.sums, whole.energy, whole.counts)
+
+
 @pytest.mark.parametrize("keep", ["all", "events", "statistics"])
 @pytest.mark.parametrize("cut", [0.0101, 0.1, 0.2999])
 def test_a_run_goes_on_as_if_it_had_not_been_cut(cut: float, keep: str, tmp_path: Path) -> None:
@@ -121,7 +130,7 @@ def test_a_run_goes_on_as_if_it_had_not_been_cut(cut: float, keep: str, tmp_path
     whole = together(keep)
     for name in ("t", "q", "u", "a", "events", "end_q", "end_u"):
         assert np.array_equal(getattr(run, name), getattr(whole, name)), name
-    assert run.sums["events_by_kind"] == whole.sums["events_by_kind"] and run.energy == whole.energy
+    assert run.sums == whole.sums and run.energy == whole.energy
 
 
 JOINED: dict[str, Callable[[Scene], Scene]] = {

@@ -44,9 +44,10 @@ def merge_rows(times, twins, systems, columns, noise, own, out_rows):
             long, j = 1 + 3 * n, at[k]
             while j < count - 1 and own[begin + j * long] < t:
                 j += 1
-            if twins[row] > 0 and j < count - 1 and own[begin + (j + 1) * long] == t:
-                j += 1
             at[k] = j
+            for _ in range(twins[row]):
+                if j < count - 1 and own[begin + (j + 1) * long] == t:
+                    j += 1
             here = begin + j * long
             before = here - long if j > 0 and own[here] > t else here
             h = own[here] - own[before]

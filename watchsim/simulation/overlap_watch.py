@@ -416,9 +416,11 @@ class OverlapWatch:
         """Look at all that waits."""
         waiting, states, owed = self._waiting, self._states, self._owed
         self._waiting, self._states, self._owed = [], [], []
+        if not (waiting or states):
+            return
         if self._layers is None:
             self._layers = declared_pairs(self._scene, CHORD * self.resolution)
-        if not self._layers.pairs or not (waiting or states):
+        if not self._layers.pairs:
             return
         n = len(self._scale)
         none = np.zeros((0, 1 + 3 * n))

@@ -13,7 +13,7 @@ import copy
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, overload
+from typing import Any, TypeAlias, Union, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -278,19 +278,45 @@ class Tally:
 
 
 def _add(moments: Array, values: Array) -> None:
-    """Take values into number, mean, sum of squares, least and largest (Chan, Golub and LeVeque 1983)."""
-    if not len(values):
-        return
-    number, mean, squares, least, largest = moments
-    count, centre = len(values), float(values.mean())
-    whole, apart = number + count, centre - mean
-    moments[0] = whole
-    moments[1] = mean + apart * count / whole
-    moments[2] = squares + float(((values - centre) ** 2).sum()) + apart * apart * number * count / whole
-    moments[3], moments[4] = min(least, values.min()), max(largest, values.max())
+    """Take values into number, mean, sum of squares, least and largest, one after the other (Welford 1962): to the last bit
+    the same however the values are handed over."""
+    number, mean, squares, least, largest = moments.tolist()
+    for value in values.tolist():
+        number += 1.0
+        apart = value - mean
+        mean += apart / number
+        squares += apart * (value - mean)
+        least, largest = min(least, value), max(largest, value)
+    moments[:] = number, mean, squares, least, largest
 
 
 Bits = NDArray[np.bool_]
+
+
+class RowsToMake:
+    """Rows at these times that `make` makes, of their numbers, when they are read: few of those that were met are kept."""
+
+    def __init__(self, times: Array, make: Callable[[Indices], Array], numbers: Indices | None = None) -> None:
+        self.times, self.make = times, make
+        self.numbers = np.arange(len(times)) if numbers is None else numbers
+
+    def __len__(self) -> int:
+        return len(self.times)
+
+    def __getitem__(self, which: Any) -> RowsToMake:
+        return RowsToMake(self.times[which], self.make, self.numbers[which])
+
+
+Rows: TypeAlias = Union[Array, RowsToMake]  # noqa: UP007 - an alias is evaluated, in Python 3.10, too
+
+
+def _times(rows: Rows) -> Array:
+    return rows.times if isinstance(rows, RowsToMake) else rows[:, 0]
+
+
+def _made(rows: Rows) -> Array:
+    return rows.make(rows.numbers) if isinstance(rows, RowsToMake) else rows
+
 
 USUAL_WINDOW = 2.0  # s, over which headline numbers are averaged
 USUAL_PERIODS = 8  # where that is longer
@@ -315,7 +341,7 @@ class Recorder:
         self._event_form = event_form or (lambda events: events)
         self._done, self._done_events = Columns(), Columns()  # what stays of earlier parts
         self._ends: list[tuple[int, int]] = []  # how many rows and events that are, after each of them
-        self._rows: list[tuple[Array, Bits]] = []  # of later parts, with those that stay for good
+        self._rows: list[tuple[Rows, Bits]] = []  # of later parts, with those that stay for good
         self._events: list[tuple[Events, Bits]] = []
         self._met = 0  # rows met within the windows
         # Is given events and t, q, u, a of rows as soon as they are settled, in order.
@@ -345,7 +371,7 @@ class Recorder:
         return {
             "met": np.array(self._met),
             "last": np.array([time, float(inside)]),
-            "row": rows[-1].copy() if waits else np.zeros(0),
+            "row": _made(rows[-1:])[0].copy() if waits else np.zeros(0),
         }
 
     def go_on(self, unfinished: Mapping[str, NDArray[Any]]) -> None:
@@ -362,17 +388,17 @@ class Recorder:
         else:
             self._last = 0, time, True
 
-    def flush(self, rows: Array, events: Events) -> None:
+    def flush(self, rows: Rows, events: Events) -> None:
         """Keep copies of what is wanted of the next rows and events, and forget earlier ones that were only of the tail."""
-        row_stays, event_stays = self._stays(rows[:, 0]), np.ones(len(events), bool)
+        row_stays, event_stays = self._stays(_times(rows)), np.ones(len(events), bool)
         if self.recording.keep == STATISTICS:
             event_stays = within(events["t"], self.recording.windows)
         if self.recording.keep == ALL:
             # What comes next decides about the last row.
             waits = row_stays | (np.arange(len(rows)) == len(rows) - 1)
             rows, row_stays = rows[waits], row_stays[waits]
-        else:
-            rows = rows if rows.base is None else rows.copy()
+        elif not isinstance(rows, RowsToMake):
+            rows = rows.copy()
         self._rows.append((rows, row_stays))
         self._events.append((events.copy(), event_stays))
         while self._is_decided():
@@ -404,7 +430,7 @@ class Recorder:
             return len(self._ends) < self._last[0]
         before = self._last[1] - self.tail
         for rows, _ in self._rows[:2]:
-            if not len(rows) or rows[-1, 0] >= before:
+            if not len(rows) or _times(rows)[-1] >= before:
                 return False
         return bool(np.max(self._events[0][0]["t"], initial=-np.inf) < before)
 
@@ -412,7 +438,7 @@ class Recorder:
         """Leave only what stays for good of the earliest open part."""
         rows, row_stays = self._rows.pop(0)
         events, event_stays = self._events.pop(0)
-        formed = self._form(rows if row_stays.all() else rows[row_stays])
+        formed = self._form(_made(rows if row_stays.all() else rows[row_stays]))
         settled = self._event_form(events[event_stays])
         if row_stays.any():
             self._done.append(formed)
@@ -444,14 +470,16 @@ class Recorder:
         """All that is kept of a run that ends at `end` (s): t, q, u, a, and events; None for nothing."""
         if not self._rows:
             return None
-        rows = np.concatenate([rows for rows, _ in self._rows])[self._chosen(end)]
+        ends = np.cumsum([len(rows) for rows, _ in self._rows])[:-1]
+        parts = zip(self._rows, np.split(self._chosen(end), ends), strict=True)
+        rows = [self._form(_made(rows[bits])) for (rows, _), bits in parts]
         events = [part[bits] for (part, _), bits in zip(self._events, self._chosen_events(end), strict=True)]
-        return self._done.all([self._form(rows)]), self._done_events.all([[self._event_form(np.concatenate(events))]])[0]
+        return self._done.all(rows), self._done_events.all([[self._event_form(np.concatenate(events))]])[0]
 
     def _chosen(self, end: float) -> Bits:
         """Which rows of the open parts are kept of a run that ends now."""
         since = self._since(end)
-        times = np.concatenate([np.zeros(0), *(rows[:, 0] for rows, _ in self._rows)])
+        times = np.concatenate([np.zeros(0), *(_times(rows) for rows, _ in self._rows)])
         stays = _joined_bits([bits for _, bits in self._rows])
         first = int(np.searchsorted(times, since))
         stays[first:] = True

@@ -3,7 +3,9 @@
 Bodies that a declared contact, a force, gears or a carrier join are one system, and so is what they are joined to in turn. What
 rests in the movement joins nothing. Each system is a scene of its own, with steps and events of its own, to the last bit those
 of a run of it alone; their rows and events are merged in time. A row of the whole is one of some system; where the others
-stand then is read from the interpolation of their own rows (see `trajectory.between`), when they have come so far.
+stand then is read from the interpolation of their own rows (see `trajectory.between`), when they have come so far and the row
+is kept. Overlaps are looked for in the rows of each system, in blocks of equal length, since when rows are merged follows the
+clock on the wall.
 """
 
 from __future__ import annotations
@@ -11,7 +13,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -23,6 +25,8 @@ from watchsim.model import frozen, words_of
 from watchsim.scene.errors import SceneError
 from watchsim.scene.scene import Recording, Scene
 from watchsim.simulation.merged_rows import merge_rows
+from watchsim.simulation.overlap_watch import NO_OVERLAP
+from watchsim.simulation.recording import RowsToMake
 from watchsim.simulation.runner import ROWS, Run, widened
 from watchsim.simulation.saved_state import AHEAD, SavedState
 from watchsim.simulation.scratch import Until, new_until
@@ -93,17 +97,22 @@ class System:
 
     columns  of its coordinates among those of the whole
     bodies   numbers of its bodies in the whole; `contacts` the same, with -1 for none at the end
+    declared the numbers of its contacts among those of the scene
     rows     in its own columns, from the last one that was merged on; `events` with the numbers of the whole
+    unseen   rows in which no overlap was looked for so far
     """
 
-    def __init__(self, part: Scene, whole: Run, prefilter: bool) -> None:
+    def __init__(self, part: Scene, whole: Run, place: Mapping[tuple[str, str, int], int], prefilter: bool) -> None:
+        """`place`: the numbers of the primitives in the whole."""
         own, compiled = compiled_anew(part, prefilter), whole.compiled
         names = [body.name for body in whole.scene.bodies]
         self.bodies = np.array([names.index(body.name) for body in part.bodies])
         ends = {name: compiled.slices[name] for name in own.slices}
         count = len(own.q)
         self.columns = np.concatenate([np.arange(ends[name].start, ends[name].stop) for name in own.slices])[:count]
-        self.contacts = np.append(_numbers(part, own, whole.scene, compiled), -1)
+        self.contacts = np.append(_numbers(part, own, whole.scene, compiled, place), -1)
+        own_contacts = {id(one) for one in part.contacts}
+        self.declared = np.flatnonzero([id(one) in own_contacts for one in whole.scene.contacts])
         coordinates = own.model.coordinates.copy()
         # What swings is said of the whole scene.
         coordinates.watched &= compiled.model.coordinates.watched[self.columns]
@@ -111,6 +120,7 @@ class System:
         self.run = Run(part, own, whole.tolerance, whole.kept.recording)
         self.noise = ROW_NOISE * whole.tolerance * own.model.coordinates.scale
         self.rows, self.events = np.zeros((0, 1 + 3 * count)), np.zeros(0, EVENT_DTYPE)
+        self.unseen = self.rows
         self.arrays = self.run.arrays()
 
     @property
@@ -143,8 +153,18 @@ class System:
         turns = events["body"] >= 0
         events["body"][turns] = self.bodies[events["body"][turns]]
         self.rows = np.concatenate([self.rows, record.rows[: used.rows]])
+        self.unseen = np.concatenate([self.unseen, record.rows[: used.rows]])
         self.events = np.concatenate([self.events, events])
         used.rows, used.events = 0, 0
+        while len(self.unseen) >= SEEN:
+            self.run.watch.see_rows(self.unseen[:SEEN])
+            self.unseen = self.unseen[SEEN:]
+
+    def see(self) -> None:
+        """Look, soon, for overlaps in all rows so far."""
+        self.take()
+        self.run.watch.see_rows(self.unseen)
+        self.unseen = self.unseen[:0]
 
     def kept(self) -> tuple[dict[str, NDArray[Any]], tuple[int, int]]:
         """What `go_back` needs."""
@@ -156,6 +176,8 @@ class System:
         for name, array in self.arrays.items():
             array[...] = arrays[name]
         self.take()
+        undone = len(self.rows) - rows
+        self.unseen = self.unseen[: max(len(self.unseen) - undone, 0)]
         self.rows, self.events = self.rows[:rows], self.events[:events]
 
     def places(self, width: int) -> Integers:
@@ -179,12 +201,13 @@ class System:
         self.rows = self.rows[max(int(np.searchsorted(self.rows[:, 0], until)) - 1, 0) :]
 
 
-def _numbers(part: Scene, own: Compiled, whole: Scene, compiled: Compiled) -> Integers:
+def _numbers(
+    part: Scene, own: Compiled, whole: Scene, compiled: Compiled, number: Mapping[tuple[str, str, int], int]
+) -> Integers:
     """The numbers that the contacts of a system have in the whole."""
     names = {body.name for body in part.bodies if body.motion != "fixed" or body.on is not None}
     stopped = [spring for spring in whole.springs if spring.stop is not None]
     groups = np.flatnonzero([bool(names & {*_ends(one)}) for one in (*whole.contacts, *stopped, *whole.gears)])
-    number = {name: i for i, name in enumerate(_primitives(compiled))}
     place = np.array([number[name] for name in _primitives(own)], np.int64)
 
     def keys(a: Integers, b: Integers, group: Integers) -> Integers:
@@ -209,6 +232,8 @@ def _primitives(compiled: Compiled) -> Iterator[tuple[str, str, int]]:
 
 # How do they run side by side?
 
+SEEN = 2000  # rows of a system in which overlaps are looked for together
+
 
 class SystemsRun(Run):
     """A run of several systems. `state` holds what they come to together."""
@@ -223,7 +248,8 @@ class SystemsRun(Run):
         prefilter: bool = True,
     ) -> None:
         super().__init__(scene, compiled, tolerance, recording)
-        self.systems = tuple(System(part, self, prefilter) for part in parts)
+        place = {name: i for i, name in enumerate(_primitives(compiled))}
+        self.systems = tuple(System(part, self, place, prefilter) for part in parts)
         # So wide that each has rows on both sides of every row next to a window.
         wide = np.array([widened(self.kept.windows, one.run.options, 2.0) for one in self.systems])
         windows = np.stack([wide[:, :, 0].min(axis=0), wide[:, :, 1].max(axis=0)], axis=1)
@@ -273,7 +299,11 @@ class SystemsRun(Run):
 
     def save(self) -> SavedState:
         """The state now: each system at a time of its own, with what it has recorded beyond the earliest of these."""
+        for one in self.systems:
+            one.see()
         state = super().save()
+        for k, one in enumerate(self.systems):
+            one.run.watch.fill_in_later(state.arrays[f"{k}.overlap"])
         counts = np.array([(len(one.rows), len(one.events)) for one in self.systems])
         rows = np.zeros((counts[:, 0].sum(), 1 + 3 * len(self.state.q)))
         for end, one in zip(np.cumsum(counts[:, 0]), self.systems, strict=True):
@@ -284,7 +314,7 @@ class SystemsRun(Run):
     def warm_up(self) -> None:
         for one in self.systems:
             one.run.warm_up()
-        self._rows_at(np.zeros(0, complex))
+        self._rows_at([one.rows for one in self.systems], np.zeros(0, complex))
 
     def _advance(self, until: Until, record: Any) -> Stop:
         """All to the end of the slice. Where one cannot go on, those that are beyond it go back."""
@@ -332,9 +362,9 @@ class SystemsRun(Run):
         """Until when all have recorded rows, s; at that instant more may follow."""
         return min(float(one.rows[-1, 0]) if len(one.rows) else -math.inf for one in self.systems)
 
-    def _rows_at(self, stamps: NDArray[np.complex128]) -> Array:
-        """Rows of the whole."""
-        lengths = np.array([(one.rows.size, len(one.rows), len(one.columns)) for one in self.systems])
+    def _rows_at(self, own: list[Array], stamps: NDArray[np.complex128]) -> Array:
+        """Rows of the whole, from those of each system."""
+        lengths = np.array([(rows.size, len(rows), len(one.columns)) for rows, one in zip(own, self.systems, strict=True)])
         rows, _, columns = (np.cumsum(lengths, axis=0) - lengths).T
         rows_of_whole = np.empty((len(stamps), 1 + 3 * len(self.state.q)))
         merge_rows(
@@ -343,7 +373,7 @@ class SystemsRun(Run):
             np.stack([rows, lengths[:, 1], columns, lengths[:, 2]], axis=1),
             np.concatenate([one.columns for one in self.systems]),
             np.concatenate([one.noise for one in self.systems]),
-            np.concatenate([one.rows.ravel() for one in self.systems]),
+            np.concatenate([rows.ravel() for rows in own]),
             rows_of_whole,
         )
         return rows_of_whole
@@ -356,7 +386,8 @@ class SystemsRun(Run):
         # Complex numbers are sorted by time, then by the number within the instant.
         stamps = np.unique(np.concatenate([one.stamps() for one in self.systems]))
         stamps = stamps[(stamps.real >= self._merged) & (stamps.real < until)]
-        rows = self._rows_at(stamps)
+        own = [one.rows for one in self.systems]
+        rows = RowsToMake(stamps.real, lambda numbers: self._rows_at(own, stamps[numbers]))
         passed = math.inf if self._is_over else min(one.time for one in self.systems)
         events = np.concatenate([one.events_before(passed) for one in self.systems])
         events = events[np.argsort(events["t"], kind="stable")]
@@ -364,8 +395,27 @@ class SystemsRun(Run):
             one.forget(until)
         self._merged = max(until, self._merged)
         self.tally.fold(events)
-        self.watch.see_rows(rows)
         self.kept.flush(rows, events)
+
+    def _look(self) -> None:
+        for one in self.systems:
+            one.run._look()
+            if self._is_over:
+                one.see()
+                one.run.watch.see()
+        self._overlaps()
+
+    def _overlaps(self) -> bool:
+        """Whether bodies of a system have overlapped too much; the watch over the whole holds what those over systems found."""
+        whole, found = self.watch.found, [one.run.watch.found for one in self.systems]
+        worst = max(range(len(found)), key=lambda k: float(found[k].depth))
+        for name in ("rows", "looks"):
+            whole[name] = sum(one[name] for one in found)
+        for name in ("depth", "time", "x", "y"):
+            whole[name] = found[worst][name]
+        if found[worst].contact != NO_OVERLAP:
+            whole.contact = self.systems[worst].declared[int(found[worst].contact)]
+        return super()._overlaps()
 
     def _crowding(self) -> str:
         return next(filter(None, [one.run._crowding() for one in self.systems]), "")
