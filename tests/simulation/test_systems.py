@@ -15,10 +15,10 @@ from watchsim.mechanism.compile import compile_scene
 from watchsim.paths import profiles_dir
 from watchsim.results.archive import read_state, write_state
 from watchsim.scene.errors import SceneError
-from watchsim.scene.forces import Contact, LineSpring, Side, Spring, Torque
+from watchsim.scene.forces import Bearing, Contact, LineSpring, Side, Spring, Torque
 from watchsim.scene.load import load
-from watchsim.scene.scene import Gear, Recording, Scene
-from watchsim.simulation.runner import Run
+from watchsim.scene.scene import Body, Gear, Recording, Scene
+from watchsim.simulation.runner import ROWS, Run
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.state import Stop
 from watchsim.simulation.systems import run_of, systems_of
@@ -133,6 +133,27 @@ def test_a_run_goes_on_as_if_it_had_not_been_cut(cut: float, keep: str, tmp_path
     assert run.sums == whole.sums and run.energy == whole.energy
 
 
+@pytest.mark.parametrize("room", [ROWS, 60])
+@pytest.mark.parametrize("first", [False, True])
+def test_where_one_cannot_go_on_the_others_end_with_it(first: bool, room: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A rotor speeds up beyond all numbers, in steps much shorter than those of the lever, which has gone ahead by then."""
+    lever = levers(1)
+    rotor = Body("rotor", "pivot", (1.0, 1.0), 0.0, (1e7,), inertia=1e-12)
+    bodies = (rotor, *lever.bodies) if first else (*lever.bodies, rotor)
+    scene = replace(lever, bodies=bodies, torques=(*lever.torques, Torque("rotor", 0.5)))
+    monkeypatch.setattr("watchsim.simulation.systems.ROWS", room)
+    run, alone = simulate(scene, 2.0), simulate(systems_of(scene)[0 if first else 1], 2.0)
+    assert (run.stop, run.simulated) == (alone.stop, alone.simulated) == (Stop.FAR_AWAY, run.t[-1])
+    own = simulate(lever, 2.0)
+    names = {body.name for body in lever.bodies if body.motion != "fixed"}
+    assert own_events(run, names) == [event for event in own_events(own, names) if event[2] <= run.simulated]  # type: ignore[operator]
+    assert (np.diff(run.t) >= 0.0).all()
+    times = np.linspace(0.0, run.simulated, 400)
+    for name in names:
+        ways = run.sample(times)[0][:, run.slices[name]] - own.sample(times)[0][:, own.slices[name]]
+        assert np.abs(ways).max() < run.tolerance
+
+
 JOINED: dict[str, Callable[[Scene], Scene]] = {
     "contact": lambda scene: replace(scene, contacts=(*scene.contacts, Contact((Side("wheel 0"), Side("wheel 1"))))),
     "spring": lambda scene: replace(
@@ -162,6 +183,16 @@ def test_a_spring_between_two_levers_carries_motion_from_one_to_the_other() -> N
     )
     apart = simulate(levers(2), 0.1)
     assert np.abs(weak.end_q - apart.end_q).max() < 1e-6 < np.abs(strong.end_q - apart.end_q).max()
+
+
+def test_bearings_go_with_their_bodies() -> None:
+    heavy = tuple(replace(body, mass=1e-4) if "balance" in body.name else body for body in levers(2).bodies)
+    scene = replace(levers(2), bodies=heavy, bearings=tuple(Bearing(f"balance {k}", 1e-4, 0.1, 1e-4) for k in range(2)))
+    parts = systems_of(scene)
+    assert [part.bearings for part in parts] == [(one,) for one in scene.bearings]
+    run, alone = simulate(scene, 0.1), simulate(parts[1], 0.1)
+    assert np.array_equal(run.end_q[run.slices["balance 1"]], alone.end_q[alone.slices["balance 1"]])
+    assert not np.array_equal(run.end_q, simulate(replace(scene, bearings=()), 0.1).end_q)
 
 
 def test_a_scene_of_one_system_is_run_as_it_is() -> None:

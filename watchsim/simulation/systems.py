@@ -100,6 +100,8 @@ class System:
     declared the numbers of its contacts among those of the scene
     rows     in its own columns, from the last one that was merged on; `events` with the numbers of the whole
     unseen   rows in which no overlap was looked for so far
+    kept     an earlier state to go back to; so many of the rows and events that wait are from `before` it, less than none where
+             later ones are handed on; `skipped`: how many come a second time, after it was gone back to
     """
 
     def __init__(self, part: Scene, whole: Run, place: Mapping[tuple[str, str, int], int], prefilter: bool) -> None:
@@ -122,6 +124,8 @@ class System:
         self.rows, self.events = np.zeros((0, 1 + 3 * count)), np.zeros(0, EVENT_DTYPE)
         self.unseen = self.rows
         self.arrays = self.run.arrays()
+        self.kept: dict[str, NDArray[Any]] = {}
+        self.before, self.skipped = np.zeros(2, np.int64), np.zeros(2, np.int64)
 
     @property
     def time(self) -> float:
@@ -137,7 +141,10 @@ class System:
     def advance(self, until: Until) -> Stop:
         """Go on; a look-up of cells or a full buffer does not end it."""
         while True:
-            stop = self.run._advance(until, self.run.record)
+            try:
+                stop = self.run._advance(until, self.run.record)
+            except OverflowError:  # so far away that no cell has a number
+                return Stop.FAR_AWAY
             if stop == Stop.CELL_UNKNOWN:
                 self.run._learn()
             elif stop == Stop.BUFFER_FULL:
@@ -148,12 +155,14 @@ class System:
     def take(self) -> None:
         """Empty the buffers."""
         used, record = self.run.record.used, self.run.record
-        events = record.events[: used.events].copy()
+        again = np.minimum(self.skipped, [used.rows, used.events])
+        self.skipped -= again
+        rows, events = record.rows[again[0] : used.rows], record.events[again[1] : used.events].copy()
         events["contact"] = self.contacts[events["contact"]]
         turns = events["body"] >= 0
         events["body"][turns] = self.bodies[events["body"][turns]]
-        self.rows = np.concatenate([self.rows, record.rows[: used.rows]])
-        self.unseen = np.concatenate([self.unseen, record.rows[: used.rows]])
+        self.rows = np.concatenate([self.rows, rows])
+        self.unseen = np.concatenate([self.unseen, rows])
         self.events = np.concatenate([self.events, events])
         used.rows, used.events = 0, 0
         while len(self.unseen) >= SEEN:
@@ -166,19 +175,21 @@ class System:
         self.run.watch.see_rows(self.unseen)
         self.unseen = self.unseen[:0]
 
-    def kept(self) -> tuple[dict[str, NDArray[Any]], tuple[int, int]]:
-        """What `go_back` needs."""
-        return {name: array.copy() for name, array in self.arrays.items()}, self.waiting
-
-    def go_back(self, kept: tuple[dict[str, NDArray[Any]], tuple[int, int]]) -> None:
-        """Go back to what was kept."""
-        arrays, (rows, events) = kept
-        for name, array in self.arrays.items():
-            array[...] = arrays[name]
+    def keep(self) -> None:
+        """Keep what `go_back` needs."""
         self.take()
-        undone = len(self.rows) - rows
-        self.unseen = self.unseen[: max(len(self.unseen) - undone, 0)]
+        self.kept = {name: array.copy() for name, array in self.arrays.items()}
+        self.before[:] = len(self.rows), len(self.events)
+
+    def go_back(self) -> None:
+        """Go back to what was kept last. What was recorded since and is handed on already is passed over on the way."""
+        self.take()
+        for name, array in self.arrays.items():
+            array[...] = self.kept[name]
+        rows, events = np.maximum(self.before, 0)
+        self.unseen = self.unseen[: max(len(self.unseen) - (len(self.rows) - rows), 0)]
         self.rows, self.events = self.rows[:rows], self.events[:events]
+        self.skipped = np.maximum(-self.before, 0)
 
     def places(self, width: int) -> Integers:
         """(1 + 3 n,): where the columns of its rows stand in rows of the whole, which have that width."""
@@ -194,11 +205,14 @@ class System:
         """The waiting events before that time (s), which wait no longer."""
         count = int(np.searchsorted(self.events["t"], time))
         passed, self.events = self.events[:count], self.events[count:]
+        self.before[1] -= count
         return passed
 
     def forget(self, until: float) -> None:
         """Drop the rows before the last one that is before `until` (s)."""
-        self.rows = self.rows[max(int(np.searchsorted(self.rows[:, 0], until)) - 1, 0) :]
+        count = max(int(np.searchsorted(self.rows[:, 0], until)) - 1, 0)
+        self.rows = self.rows[count:]
+        self.before[0] -= count
 
 
 def _numbers(
@@ -317,25 +331,32 @@ class SystemsRun(Run):
         self._rows_at([one.rows for one in self.systems], np.zeros(0, complex))
 
     def _advance(self, until: Until, record: Any) -> Stop:
-        """All to the end of the slice. Where one cannot go on, those that are beyond it go back."""
-        before, end, failed = [one.kept() for one in self.systems], until.slice_end, Stop.RUNNING
-        stops, steps = [], until.steps
-        for one in self.systems:
+        """All to the end of the slice. Who is behind goes first, and nobody begins a step beyond one that is still on its way.
+
+        Where one cannot go on, those that are beyond it go back to what was kept when nobody was behind them.
+        """
+        end, failed, stops, steps = until.slice_end, Stop.RUNNING, {}, until.steps
+        for k, one in sorted(enumerate(self.systems), key=lambda pair: pair[1].time):
+            if not one.kept or one.time <= min(other.time for other in self.systems):
+                one.keep()
             own = new_until(end, until.end, bool(until.may_cut), steps)
-            stops.append(one.advance(own))
+            stops[k] = one.advance(own)
             until.steps = min(until.steps, own.steps)
-            if stops[-1] not in (Stop.SLICE, Stop.LAST_STEP, Stop.DURATION):
-                end, failed, self._failing = one.time, stops[-1], one.run
-        for one, kept in zip(self.systems, before, strict=True):
+            if stops[k] == Stop.SLICE:
+                end = min(end, one.time)
+            elif stops[k] not in ORDER:
+                end, failed, self._failing = one.time, stops[k], one.run
+                break
+        for one in self.systems:
             if failed != Stop.RUNNING and one.time > end:
-                one.go_back(kept)
+                one.go_back()
         self._gather()
         # Those that wait for the last step do not slow down the others.
-        going = [one.time for one, stop in zip(self.systems, stops, strict=True) if stop == Stop.SLICE]
+        going = [self.systems[k].time for k, stop in stops.items() if stop == Stop.SLICE]
         self.state.clock.time = min(going, default=self.state.clock.time)
         if sum(one.waiting[0] for one in self.systems) > ROWS // 4:
             self.flush()
-        return failed if failed != Stop.RUNNING else min(stops, key=ORDER.index)
+        return failed if failed != Stop.RUNNING else min(stops.values(), key=ORDER.index)
 
     def _come_together(self) -> None:
         """All to the time of the one that is furthest: the run ends there."""
