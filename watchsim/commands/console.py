@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import contextlib
 import dis
 import errno
@@ -224,6 +225,20 @@ def check_tolerance(tolerance: float | None) -> None:
 def parse_names(text: str | None) -> list[str] | None:
     """The names in a text such as "wheel,lever"."""
     return [name.strip() for name in text.split(",") if name.strip()] if text else None
+
+
+def add_study_options(parser: argparse.ArgumentParser) -> None:
+    """The options of every study that writes a results folder."""
+    parser.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], help="change a value of the scene")
+    parser.add_argument(
+        "--tol", "--tolerance", metavar="X", type=float, help="relative error per step (default: the scene's, 1e-9)"
+    )
+    parser.add_argument("--workers", metavar="N", type=int, help="processes (default: as many as there are processors)")
+    parser.add_argument("--scheduler", metavar="ADDRESS", help="of dask.distributed, such as tcp://127.0.0.1:8786")
+    parser.add_argument("--resume", action="store_true", help="go on with what the results folder holds")
+    parser.add_argument("--force", action="store_true", help="replace the study in a results folder that exists")
+    parser.add_argument("--no-plots", action="store_true", help="write no plots")
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
 
 
 def parse_positive(option: str, text: str, dimension: Dimension) -> float:

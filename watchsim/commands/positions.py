@@ -11,7 +11,7 @@ import contextlib
 from typing import TYPE_CHECKING, Any
 
 from watchsim import stopping
-from watchsim.commands.console import FINE, MISSED, InputError, check_tolerance, parse_names, print_json
+from watchsim.commands.console import FINE, MISSED, InputError, add_study_options, check_tolerance, parse_names, print_json
 from watchsim.commands.sweep import executor_of, status_of, study_folder, watched
 
 if TYPE_CHECKING:
@@ -33,16 +33,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--wound", metavar="LIST", help="hours since winding (default 0,24 with a mainspring, else 0)")
     parser.add_argument("-o", "--output", metavar="DIR", help="results folder (default results/NAME-positions)")
-    parser.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], help="change a value of the scene")
-    parser.add_argument(
-        "--tol", "--tolerance", metavar="X", type=float, help="relative error per step (default: the scene's, 1e-9)"
-    )
-    parser.add_argument("--workers", metavar="N", type=int, help="processes (default: as many as there are processors)")
-    parser.add_argument("--scheduler", metavar="ADDRESS", help="of dask.distributed, such as tcp://127.0.0.1:8786")
-    parser.add_argument("--resume", action="store_true", help="go on with what the results folder holds")
-    parser.add_argument("--force", action="store_true", help="replace the study in a results folder that exists")
-    parser.add_argument("--no-plots", action="store_true", help="write no plots")
-    parser.add_argument("--json", action="store_true", help="print one JSON object")
+    add_study_options(parser)
 
 
 def run(args: argparse.Namespace) -> int:

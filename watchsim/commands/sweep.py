@@ -20,6 +20,7 @@ from watchsim.commands.console import (
     MISSED,
     InputError,
     Progress,
+    add_study_options,
     announce_compile,
     check_tolerance,
     parse_names,
@@ -55,16 +56,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--sensitivity", action="store_true", help="derivatives by every number of the scene, or by the KEYs named"
     )
-    parser.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], help="change a value of the scene")
-    parser.add_argument(
-        "--tol", "--tolerance", metavar="X", type=float, help="relative error per step (default: the scene's, 1e-9)"
-    )
-    parser.add_argument("--workers", metavar="N", type=int, help="processes (default: as many as there are processors)")
-    parser.add_argument("--scheduler", metavar="ADDRESS", help="of dask.distributed, such as tcp://127.0.0.1:8786")
-    parser.add_argument("--resume", action="store_true", help="go on with what the results folder holds")
-    parser.add_argument("--force", action="store_true", help="replace the study in a results folder that exists")
-    parser.add_argument("--no-plots", action="store_true", help="write no plots")
-    parser.add_argument("--json", action="store_true", help="print one JSON object")
+    add_study_options(parser)
 
 
 def run(args: argparse.Namespace) -> int:

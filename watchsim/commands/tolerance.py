@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from watchsim import stopping
-from watchsim.commands.console import FINE, InputError, check_tolerance, parse_positive, print_json, say
+from watchsim.commands.console import FINE, InputError, add_study_options, check_tolerance, parse_positive, print_json, say
 from watchsim.commands.sweep import executor_of, status_of, study_folder, watched
 from watchsim.commands.write import write_study
 
@@ -33,16 +33,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--importance", action="store_true", help="sample mostly near the failures: for yields above 99.9 %%")
     parser.add_argument("--seed", metavar="N", type=int, default=0, help="other watches of the same tolerances (default 0)")
     parser.add_argument("--shard", metavar="I/N", help="only the i-th of n shares, for watchsim merge")
-    parser.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], help="change a value of the scene")
-    parser.add_argument(
-        "--tol", "--tolerance", metavar="X", type=float, help="relative error per step (default: the scene's, 1e-9)"
-    )
-    parser.add_argument("--workers", metavar="N", type=int, help="processes (default: as many as there are processors)")
-    parser.add_argument("--scheduler", metavar="ADDRESS", help="of dask.distributed, such as tcp://127.0.0.1:8786")
-    parser.add_argument("--resume", action="store_true", help="go on with what the results folder holds")
-    parser.add_argument("--force", action="store_true", help="replace the study in a results folder that exists")
-    parser.add_argument("--no-plots", action="store_true", help="write no plots")
-    parser.add_argument("--json", action="store_true", help="print one JSON object")
+    add_study_options(parser)
 
 
 def run(args: argparse.Namespace) -> int:
