@@ -180,6 +180,7 @@ BAD = [
     (["--positions", "CH,13H"], '"13H" is no position'),
     (["--positions", ","], "name at least one"),
     (["--temperatures", "warm"], "write numbers with commas between them, such as 8,23,38"),
+    (["--temperatures", "warm", "--positions", "13H"], '"13H" is no position'),
     (["--temperatures", "23,300"], "must lie between −60 °C and 120 °C"),
     (["--wound", "0,24"], "needs a mainspring"),
     (["--wound", "-1"], "the mainspring was wound before now"),

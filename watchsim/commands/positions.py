@@ -38,6 +38,7 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     from watchsim.commands.inputs import load_scene
+    from watchsim.scene.read_watch import up_of
     from watchsim.studies.positions import planned
 
     check_tolerance(args.tol)
@@ -46,6 +47,11 @@ def run(args: argparse.Namespace) -> int:
     names = parse_names(args.positions)
     if not names:
         faults.append("--positions: name at least one, such as CH,6H")
+    for name in names or ():
+        try:
+            up_of(name)
+        except ValueError as error:
+            faults.append(f"--positions: {error}")
     if args.workers is not None and args.workers < 1:
         faults.append(f"--workers {args.workers}: at least one process is needed")
     if faults:

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 FORKS = hasattr(os, "fork") and sys.platform != "darwin"  # the system libraries of macOS do not survive one
 PACE = 0.25  # s between two reports of how far a run has come
 GRACE = 2.0  # s that a process may take to end
-SHOWN = 2e-6  # of a value: digits beyond that help nobody who draws
+SHOWN = 2e-4  # of a value: digits beyond that help nobody who draws
 DPI = 110  # of the picture of a drawing with faults
 
 
