@@ -179,6 +179,8 @@ def test_all_faults_are_reported_at_once(desk):
         (desk / "faulty.toml").write_text(f"{base}[tolerances]\n{line}\n", encoding="utf-8")
         with pytest.raises(ws.SceneError, match=message.replace("?", r"\?")):
             ws.load(desk / "faulty.toml")
+    with pytest.raises(ws.SceneError, match=r'write "contacts.0.friction.static", "contacts.0.friction.sliding" in its place'):
+        ws.load(desk).set("contacts.0.friction", {"static": 0.2, "sliding": 0.1})
     three = [
         '"contacts.0.friction" = { limits = "±0.1", correlated = { "contacts.1.friction" = 0.9, "torques.0.value" = 0.9 } }',
         '"contacts.1.friction" = { limits = "±0.1", correlated = { "torques.0.value" = -0.9 } }',

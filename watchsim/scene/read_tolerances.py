@@ -184,6 +184,10 @@ def _tolerance(scene: Scene, name: str, table: Table) -> Tolerance | None:
     shape = table.one_of("distribution", "uniform", SHAPES)
     try:
         value = nominal_at(scene, key)
+        if isinstance(value, dict):
+            several = ", ".join(f'"{name}.{one}"' for one in value)
+            table.fault("", f"the scene gives several numbers there: write {several} in its place")
+            return None
         numbers = value if isinstance(value, list) else [value]
         nominal = [
             parse(one if isinstance(one, str) or dimension is NUMBER else f"{one!r} {dimension.si}", dimension)
