@@ -33,6 +33,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--contacts", action="store_true", help="mark the contacts that are closed")
     parser.add_argument("--forces", action="store_true", help="arrows for the forces at contacts, and their scale")
+    parser.add_argument("--names", action="store_true", help="names on the parts: entry stone, guard pin, roller jewel, ...")
     parser.add_argument("--phases", action="store_true", help="name the phases of a beat")
     parser.add_argument(
         "--strip",
@@ -50,7 +51,11 @@ def options(parser: argparse.ArgumentParser) -> None:
         help='show a place enlarged: lever, lever.STONES, lever.STONES.2 (its second outline), "entry stone", "exit stone" or '
         '"-1.4,1.9:-0.8,2.5" (mm); may be given several times',
     )
-    parser.add_argument("--zoom", metavar="NAMES", help="frame only these bodies, with commas between them")
+    parser.add_argument(
+        "--zoom",
+        metavar="NAMES",
+        help='frame only these bodies, with commas between them, or "all" (default: what touches, the whole small beside it)',
+    )
     parser.add_argument("-o", "--output", metavar="FILE", help="file.mp4 or file.gif (default RUN/movie.mp4)")
 
 
@@ -85,6 +90,7 @@ def run(args: argparse.Namespace) -> int:
             insets=args.inset,
             strip=args.strip,
             phases=args.phases,
+            names=args.names,
             forces=args.forces,
             sound=args.sound,
             dark=args.dark,

@@ -19,8 +19,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from watchsim.render.palette import LIGHT
-from watchsim.render.stage import DPI, Extras, shared_room
-from watchsim.render.view import Pixels, Window, view
+from watchsim.render.stage import DPI, Extras, rooms
+from watchsim.render.view import Pixels, Window
 from watchsim.render.words import lay_out
 from watchsim.simulation.trajectory import Trajectory
 from watchsim.storage.write import write_file
@@ -207,8 +207,8 @@ def fitting(
     best, largest = (GIF_SIZE if gif else MP4_SIZE), 0.0
     for size in FORMATS_GIF if gif else FORMATS:
         figure = Figure(figsize=((size[0] + 0.5) / DPI, (size[1] + 0.5) / DPI), dpi=DPI)
-        frame = lay_out(figure, run, window, (window[1] - window[0]) / 2000.0, LIGHT).frame
-        seen = view(run, window, shared_room(frame, extras, size[1])[0], zoom, turn)
+        layout = lay_out(figure, run, window, (window[1] - window[0]) / 2000.0, LIGHT)
+        seen = rooms(run, window, layout, extras, size[1], zoom, turn).sight.view
         if seen.follow is not None:
             return best, None
         if seen.scale > GAIN * largest:

@@ -25,7 +25,7 @@ from watchsim.render.marks import STONES, PalletStones, clock
 from watchsim.render.palette import Style, looks
 from watchsim.render.parts import LastingPatch, Part, loops_of, outline, parts, pose_matrix
 from watchsim.render.patches import CoilPatches
-from watchsim.render.view import COARSE, Frame, Pixels, View, Window, choose, dense, fitted, placed, swept
+from watchsim.render.view import COARSE, Frame, Pixels, View, Window, choose, dense, fitted, placed, seen, swept
 from watchsim.render.words import Words
 from watchsim.scene.roles import roles
 from watchsim.scene.scene import Body, Scene
@@ -190,6 +190,13 @@ class InsetPicture:
         corners = _rectangle(middle - scale * half, middle + scale * half)
         look = {"fill": False, "edgecolor": self._style.ink, "linewidth": 0.8 * self._thin, "alpha": 0.55}
         return LastingPatch(corners, transform=IdentityTransform(), **look).drawn_on(self._figure, room.box)
+
+    def outline_of(self, room: Frame, matrix: Array, frames: dict[str, Array]) -> LastingPatch:
+        """The rectangle of the inset that the picture shows in `room`; `matrix` is the picture's map from metres."""
+        corners = np.array([(room.left, room.bottom), (room.left + room.width, room.bottom + room.height)])
+        low, high = seen(corners, self._inset.matrix(frames) @ np.linalg.inv(matrix))
+        look = {"fill": False, "edgecolor": self._style.contact, "linewidth": self._thin}
+        return self._own(LastingPatch(_rectangle(low, high), transform=IdentityTransform(), **look))
 
     def draw(self, renderer: RendererBase, frames: dict[str, Array], marks: Marks, out_pixels: Pixels) -> None:
         """Draw the inset for the poses x, y, angle of one instant."""

@@ -38,6 +38,7 @@ from watchsim.render.encoder import (
 from watchsim.render.insets import strip_body
 from watchsim.render.marks import Clock, ContactMarks, ForceArrows
 from watchsim.render.palette import DARK, LIGHT
+from watchsim.render.part_names import part_names
 from watchsim.render.stage import Extras, Stage
 from watchsim.render.view import Pixels, Window, poses, stretch
 from watchsim.simulation.state import EVENT_DTYPE, EventKind, Stop
@@ -218,6 +219,7 @@ ADAPTIVE = "adaptive"  # a speed
 
 MP4_FPS, GIF_FPS = 60.0, 25.0
 LENGTH = 10.0  # s: a movie at adaptive speed
+ORDERED = 25  # instants of a movie for which names on the parts are put in order
 SAMPLES = 12  # frames from which a GIF takes its colours
 
 
@@ -236,6 +238,7 @@ def movie(  # noqa: PLR0913 - options, by name
     insets: Sequence[str] = (),
     strip: str | bool = False,
     phases: bool = False,
+    names: bool = False,
     forces: bool = False,
     sound: bool = False,
     dark: bool = False,
@@ -251,12 +254,14 @@ def movie(  # noqa: PLR0913 - options, by name
     size      (width, height) in pixels, rounded up to even numbers; default 1280 × 720, GIF 800 × 450; "auto": the
               mechanism the way up that it is drawn, in the wide, square or tall format that shows it largest
     contacts  rings around the contacts that are closed
-    zoom      names of the bodies to frame; default all
+    zoom      names of the bodies to frame, or "all"; default: what touches, with the whole small beside it, or all where that
+              is hardly smaller
     turn      radians by which the picture is turned; default: gravity down, or the quarter turn that fills the frame best
     insets    places to enlarge: "lever", "lever.STONES", "lever.STONES.2" (its second outline), "entry stone", "exit stone",
               or a rectangle of the movement in mm, "-1.4, 1.9 : -0.8, 2.5"
     strip     the body whose angle and velocity run below the mechanism; True: the oscillator
     phases    names the phase of a beat
+    names     on the parts, as in `watchsim.report`
     forces    arrows for the forces at contacts, of a run by events
     sound     the ticking: each blow when its instant is shown, at slow and adaptive speed, too, with its own pitch
     dark      on dark ground
@@ -273,7 +278,7 @@ def movie(  # noqa: PLR0913 - options, by name
         raise ValueError("sound: a GIF holds none; choose a name that ends in .mp4")
     heard = soundtrack(run, plan) if sound else None
     arrows = ForceArrows(run, plan.times) if forces else None
-    extras = _extras(run, insets, strip, phases, arrows)
+    extras = _extras(run, insets, strip, phases, arrows, np.linspace(*span, ORDERED).tolist() if names else ())
     pixels, turn = _size(run, span, extras, size, zoom, turn, gif)
     steady, step = (None if speed == ADAPTIVE else float(speed)), float(plan.speeds.min()) / plan.fps
     style = DARK if dark else LIGHT
@@ -297,6 +302,7 @@ def frame(  # noqa: PLR0913 - options, by name
     insets: Sequence[str] = (),
     strip: str | bool = False,
     phases: bool = False,
+    names: bool = False,
     forces: bool = False,
     dark: bool = False,
 ) -> Pixels:
@@ -309,7 +315,7 @@ def frame(  # noqa: PLR0913 - options, by name
         raise ValueError(f"t = {t:.9g} s lies outside {span[0]:.9g} s to {span[1]:.9g} s")
     plan = Plan(np.array([float(t)]), np.ones(1), 1.0)
     arrows = ForceArrows(run, plan.times) if forces else None
-    extras = _extras(run, insets, strip, phases, arrows)
+    extras = _extras(run, insets, strip, phases, arrows, (float(t),) if names else ())
     pixels, turn = _size(run, span, extras, size, zoom, turn, False) if isinstance(size, str) else (checked(size), turn)
     stage = Stage(run, pixels, span, zoom=zoom, turn=turn, extras=extras, style=DARK if dark else LIGHT)
     marks = ContactMarks(run) if contacts else None
@@ -355,11 +361,21 @@ def _palette(pictures: Callable[[NDArray[np.int64]], Iterator[Pixels]], count: i
     return shared_palette([picture.copy() for picture in pictures(sampled)], named)
 
 
-def _extras(run: Trajectory, insets: Sequence[str], strip: str | bool, phases: bool, arrows: ForceArrows | None) -> Extras:
+def _extras(
+    run: Trajectory,
+    insets: Sequence[str],
+    strip: str | bool,
+    phases: bool,
+    arrows: ForceArrows | None,
+    ordered: Sequence[float],
+) -> Extras:
     places = (insets,) if isinstance(insets, str) else tuple(insets)
     body = None if strip is False else strip_body(run, None if strip is True else strip)
+    names = tuple(part_names(run.scene)) if len(ordered) else ()
+    if len(ordered) and not names:
+        raise ValueError("names: the parts of this scene have none, since no escape wheel drives anything that swings")
     force, scale = (arrows.largest, arrows.round_force) if arrows else (0.0, 0.0)
-    return Extras(places, body, tuple(named_phases(run)) if phases else (), force, scale)
+    return Extras(places, body, tuple(named_phases(run)) if phases else (), force, scale, names, tuple(ordered))
 
 
 FPS = 30.0

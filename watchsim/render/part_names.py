@@ -1,22 +1,31 @@
-"""What are the places of an escapement called, and where are they? By what they do, not by the names of layers.
+"""What are the places of an escapement called, where are they, and where does a picture write their names?
 
-A stone locks the wheel, a pin enters the fork, a safety roller faces the guard pin: each follows from roles and contacts.
+A stone locks the wheel, a pin enters the fork, a safety roller faces the guard pin: each follows from roles and contacts, not
+from the names of layers. Names stand in two columns beside the mechanism, each with a line to its place; lines do not cross.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from matplotlib.path import Path
+from matplotlib.transforms import IdentityTransform
+from scipy.optimize import linear_sum_assignment
 
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Point
 from watchsim.geometry.solids import mass_properties
 from watchsim.render.marks import STONES, PalletStones
-from watchsim.render.parts import loops_of
-from watchsim.render.view import hairsprings
+from watchsim.render.palette import Style
+from watchsim.render.parts import LastingPatch, loops_of, pose_matrix
+from watchsim.render.view import Frame, Pixels, hairsprings, seen
+from watchsim.render.words import Words
 from watchsim.scene.roles import Roles, with_anchor
 from watchsim.scene.scene import Body, Scene
+from watchsim.simulation.trajectory import Array
 
 OFF_PIVOT = 0.3  # of a layer's reach: a pin's middle is farther from the pivot, that of a roller is not
 ALONE = 0.5  # of all the lever's outlines by length: a shorter one is a stone of its own, a longer one carries its pallets
@@ -30,6 +39,11 @@ class PartName:
     body: str | None
     point: Point
 
+    def seen(self, frames: dict[str, Array], matrix: Array) -> Array:
+        """(2,) pixels, for the poses x, y, angle of one instant and a map from metres."""
+        pose = np.eye(3) if self.body is None else pose_matrix(frames[self.body])
+        return seen(np.array([self.point]), matrix @ pose)[0]
+
 
 def part_names(scene: Scene) -> list[PartName]:
     """Wheel, lever and oscillator at their pivots, and what they touch each other with; empty without an oscillator."""
@@ -37,10 +51,21 @@ def part_names(scene: Scene) -> list[PartName]:
     if found.oscillator is None or found.wheel is None:
         return []
     whole = [PartName("escape wheel", found.wheel, (0.0, 0.0))]
-    whole.append(PartName("pendulum" if any(scene.gravity) else "balance", found.oscillator, (0.0, 0.0)))
+    whole.append(
+        PartName(
+            "balance" if any(one.body == found.oscillator for one in scene.springs) else "pendulum",
+            found.oscillator,
+            (0.0, 0.0),
+        )
+    )
+    carrier = scene.body(found.wheel).on
+    if carrier is not None:
+        whole.append(PartName("carriage", carrier, _tip(loops_of(scene.body(carrier)))))
     if found.lever is not None:
+        springs = [body for body in scene.bodies if body.on == found.lever and body.loops]
         if found.lever != found.oscillator:
-            whole.append(PartName("lever", found.lever, (0.0, 0.0)))
+            whole.append(PartName("detent" if springs else "lever", found.lever, (0.0, 0.0)))
+            whole += [PartName("passing spring", body.name, _tip(loops_of(body))) for body in springs]
         whole += _pallets(scene, found)
     return [*whole, *_touching(scene, found), *_studs(scene)]
 
@@ -102,7 +127,7 @@ def _middle(loops: list[Loop]) -> Point:
     return mass_properties(closed, 1.0, 1.0).centre if closed else loops[0].edges[0].point(0.5)
 
 
-def _corners(loops: list[Loop]) -> list[Point]:
+def _corners(loops: Sequence[Loop]) -> list[Point]:
     return [edge.point(share) for loop in loops for edge in loop.edges for share in (0.0, 0.5)]
 
 
@@ -110,7 +135,7 @@ def _reach(loops: list[Loop]) -> float:
     return max(math.hypot(*point) for point in _corners(loops))
 
 
-def _tip(loops: list[Loop]) -> Point:
+def _tip(loops: Sequence[Loop]) -> Point:
     """What lies farthest from the pivot: the end of a fork, of a guard pin."""
     return max(_corners(loops), key=lambda point: math.hypot(*point))
 
@@ -118,3 +143,93 @@ def _tip(loops: list[Loop]) -> Point:
 def _edge(loops: list[Loop]) -> Point:
     """A point of a roller's rim."""
     return min(_corners(loops), key=lambda point: point[1])
+
+
+# The page places names in the same way (pages/assets/names.js).
+
+COLUMN = 9.6  # of the text's size: the longest name, and air on its either side
+INSET = 1.0  # of the text's size: from a picture's edge to its names
+SLANTED = 0.5  # of the text's size: from the longest name to where the lines of its column begin to slant
+DOT = 2.2  # pixels at 1280 × 720: radius of the end of a line
+
+
+@dataclass(frozen=True)
+class Label:
+    """A name in a picture, in pixels from its lower left corner.
+
+    box   left, bottom, right, top of the text
+    line  (3, 2), from the name to its place; None where it would cross another, or the place is out of sight
+    at    (2,): the place
+    """
+
+    name: PartName
+    box: tuple[float, float, float, float]
+    line: Array | None
+    at: Array
+
+
+class Labels:
+    """The names of parts in `room` (pixels), beside a mechanism that lies within its middle.
+
+    `ways` (instants, n, 2): where the named places are to be seen; names keep their rows, those of the shortest lines in all.
+    """
+
+    def __init__(self, names: Sequence[PartName], room: Frame, words: Words, ways: Array) -> None:
+        inside = [any(room.near(x, y, 0.0) for x, y in way) for way in ways.transpose(1, 0, 2).tolist()]
+        self._names = [name for name, here in zip(names, inside, strict=True) if here]
+        self._words, self._room, size = words, room, words.size
+        widest = max((words.width(name.text) for name in self._names), default=0)
+        left, right = room.left + INSET * size, room.left + room.width - INSET * size
+        half = -(-len(self._names) // 2)
+        self._slots: list[tuple[bool, float, float, float]] = []  # on the left, outer edge, height, where the line slants from
+        for k in range(len(self._names)):
+            on_left, count = k < half, half if k < half else len(self._names) - half
+            y = room.bottom + room.height * (1.0 - ((k if on_left else k - half) + 0.5) / count)
+            begin = left + widest + SLANTED * size if on_left else right - widest - SLANTED * size
+            self._slots.append((on_left, left if on_left else right, y, begin))
+        starts = np.array([(begin, y) for _, _, y, begin in self._slots]).reshape(-1, 2)
+        apart = np.linalg.norm(ways[:, inside][:, :, None] - starts[None, None], axis=3).sum(axis=0)
+        self._slot_of = linear_sum_assignment(apart)[1].tolist()
+
+    def at(self, frames: dict[str, Array], matrix: Array) -> list[Label]:
+        """The labels for the poses x, y, angle of one instant, in a picture with that map from metres."""
+        found: list[Label] = []
+        for name, slot in zip(self._names, self._slot_of, strict=True):
+            on_left, edge, y, begin = self._slots[slot]
+            width, size = self._words.width(name.text), self._words.size
+            x = edge if on_left else edge - width
+            place = name.seen(frames, matrix)
+            line = np.array([(x + width + 0.3 * size if on_left else x - 0.3 * size, y), (begin, y), place])
+            shown = self._room.near(float(place[0]), float(place[1]), 0.0)
+            found.append(Label(name, (x, y - 0.45 * size, x + width, y + 0.55 * size), line if shown else None, place))
+        kept: list[Array] = []
+        clear = []
+        for label in sorted(found, key=lambda one: math.inf if one.line is None else math.dist(*one.line[1:].tolist())):
+            crossed = label.line is None or any(_cross(label.line, other) for other in kept)
+            clear.append(replace(label, line=None) if crossed else label)
+            if not crossed and label.line is not None:
+                kept.append(label.line)
+        return clear
+
+    def lines(self, labels: Sequence[Label], style: Style, unit: float) -> Iterator[LastingPatch]:
+        """Their lines, each with a dot at its place; `unit` is the size of everything drawn."""
+        look = {"transform": IdentityTransform(), "edgecolor": style.ink, "facecolor": style.ink, "linewidth": max(unit, 0.6)}
+        for label in labels:
+            if label.line is not None:
+                dot = Path.circle((float(label.at[0]), float(label.at[1])), max(DOT * unit, 1.5))
+                yield from (LastingPatch(Path(label.line), fill=False, **look), LastingPatch(dot, **look))
+
+    def write(self, labels: Sequence[Label], out_pixels: Pixels) -> None:
+        """Write the names, which stand on the picture's ground."""
+        for label in labels:
+            self._words.write(label.name.text, label.box[0], label.box[1] + 0.1 * self._words.size, out_pixels)
+
+
+def _cross(one: Array, other: Array) -> bool:
+    """Do the slanted parts of two lines cross?"""
+    (a, b), (c, d) = one[1:], other[1:]
+
+    def side(p: Array, q: Array, r: Array) -> float:
+        return float((q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]))
+
+    return side(a, b, c) * side(a, b, d) < 0.0 and side(c, d, a) * side(c, d, b) < 0.0

@@ -23,13 +23,15 @@ from watchsim.analysis.phases import Phase
 from watchsim.geometry.primitives import Point
 from watchsim.mechanism.check import ModelledPairs
 from watchsim.mechanism.compile import Compiled
-from watchsim.render.insets import InsetPicture, Marks, Strip, beside, insets
+from watchsim.render.insets import Inset, InsetPicture, Marks, Strip, beside, insets
 from watchsim.render.marks import Clock, arrow_path, changing_speed_text, turn_text
+from watchsim.render.opening import Sight, sight
 from watchsim.render.palette import DARK, FAULT, LIGHT, Style
+from watchsim.render.part_names import COLUMN, Label, Labels, PartName
 from watchsim.render.parts import Edges, LastingPatch, loops_of
 from watchsim.render.patches import Mechanism
-from watchsim.render.view import Frame, Pixels, View, Window, poses, seen, view
-from watchsim.render.words import Words, draw_key, draw_notes, draw_rules, draw_scale, lay_out, relative_size
+from watchsim.render.view import Frame, Pixels, Window, poses, seen
+from watchsim.render.words import Layout, Words, draw_key, draw_notes, draw_rules, draw_scale, lay_out, relative_size
 from watchsim.scene.scene import Scene
 from watchsim.simulation.state import EVENT_DTYPE, Stop
 from watchsim.simulation.trajectory import Array, Trajectory
@@ -39,11 +41,13 @@ from watchsim.units import metric
 
 @dataclass(frozen=True)
 class Extras:
-    """insets  places to enlarge (see `insets`)
-    strip   the body whose angle and velocity run below the mechanism; None: no strip
-    phases  of the beats, in order: named, and shaded in the strip
-    force   N: the force that the longest arrow stands for; 0: no arrows
-    scale   N: a round force, for the key of the arrows
+    """insets   places to enlarge (see `insets`)
+    strip    the body whose angle and velocity run below the mechanism; None: no strip
+    phases   of the beats, in order: named, and shaded in the strip
+    force    N: the force that the longest arrow stands for; 0: no arrows
+    scale    N: a round force, for the key of the arrows
+    names    on the parts
+    ordered  instants (s) for which the lines of the names are kept short
     """
 
     insets: tuple[str, ...] = ()
@@ -51,6 +55,8 @@ class Extras:
     phases: tuple[Phase, ...] = ()
     force: float = 0.0
     scale: float = 0.0
+    names: tuple[PartName, ...] = ()
+    ordered: tuple[float, ...] = ()
 
     def phase_at(self, t: float) -> str:
         """The name of the phase at `t` (s); empty where none is known."""
@@ -64,20 +70,40 @@ LEAST = 60.0  # pixels of height that must be left for the mechanism
 PAD = 24.0  # pixels at 1280 × 720
 
 
-def shared_room(frame: Frame, extras: Extras, height: float) -> tuple[Frame, Frame | None, tuple[Frame, ...]]:
-    """Who has which room (pixels) of the frame between the bands of words: the mechanism, the strip below it, the insets.
+@dataclass(frozen=True)
+class Rooms:
+    """Who has which room of a picture, pixels: names and the mechanism between them, the strip below, the insets."""
 
-    `height` is that of the picture.
-    """
-    room, below = frame, None
+    sight: Sight
+    names: Frame
+    strip: Frame | None
+    insets: tuple[Frame, ...]
+
+
+def rooms(
+    run: Trajectory,
+    window: Window,
+    layout: Layout,
+    extras: Extras,
+    height: float,
+    zoom: Sequence[str] | None,
+    turn: float | None,
+) -> Rooms:
+    """Divide the frame between the bands of words of a picture of that height."""
+    room, below, size = layout.frame, None, layout.small.size
     if extras.strip is not None:
-        taken = (STRIP_WIDE if frame.width >= frame.height else STRIP_TALL) * height
-        below = Frame(frame.left, frame.bottom, frame.width, taken)
-        room = Frame(frame.left, frame.bottom + taken, frame.width, frame.height - taken)
+        taken = (STRIP_WIDE if room.width >= room.height else STRIP_TALL) * height
+        below = Frame(room.left, room.bottom, room.width, taken)
+        room = Frame(room.left, room.bottom + taken, room.width, room.height - taken)
         if room.height < LEAST:
             raise ValueError("no room is left for the mechanism above its strip; choose a larger picture, or no strip")
     room, boxes = beside(room, len(extras.insets))
-    return room, below, boxes
+    column = COLUMN * size if extras.names else 0.0
+    if room.width < 2.0 * column + LEAST:
+        raise ValueError("no room is left for the mechanism between its names; choose a larger picture, or no names")
+    found = sight(run, window, room, zoom, turn, relative_size(layout.frame.width, height), column)
+    around = found.room
+    return Rooms(found, Frame(around.left - column, around.bottom, around.width + 2.0 * column, around.height), below, boxes)
 
 
 class Beside:
@@ -92,27 +118,45 @@ class Beside:
         run: Trajectory,
         window: Window,
         extras: Extras,
-        frame: Frame,
-        size: float,
+        layout: Layout,
+        shared: Rooms,
         unit: float,
         style: Style,
     ) -> None:
+        size, room = layout.small.size, shared.sight.room
         self._style = style
         self._figure, self._run, self._window, self._extras, self._unit = figure, run, window, extras, unit
         self._words, self._faint = Words(size, style.ink, style.background), Words(size, style.faint, style.background)
         self._bold = Words(size, style.ink, style.background, "bold")
-        self._frame, self._strip, self._turn = frame, None, 0.0
-        self.room, below, self._boxes = shared_room(frame, extras, figure.bbox.height)
-        if below is not None and extras.strip is not None:
-            self._strip = Strip(run, window, below, extras.strip, extras.phases, size, style)
-        self._longest = ARROW * min(self.room.width, self.room.height)
-        self._insets: list[InsetPicture] = []
+        self._frame, self._room, self._turn, self._strip = layout.frame, room, shared.sight.view.turn, None
+        if shared.strip is not None and extras.strip is not None:
+            self._strip = Strip(run, window, shared.strip, extras.strip, extras.phases, size, style)
+        self._longest = ARROW * min(room.width, room.height)
+        places = insets(run, window, extras.insets, shared.insets, self._turn)
+        self._insets = [InsetPicture(figure, run.scene, one, unit, self._words, style) for one in places]
+        self._whole = self._whole_of(shared.sight)
+        self._labels = self._labels_in(shared) if extras.names else None
 
-    def look_at(self, view: View) -> None:
-        """Prepare the insets, which stand the same way up as the picture's own view."""
-        self._turn = view.turn
-        made = insets(self._run, self._window, self._extras.insets, self._boxes, view.turn)
-        self._insets = [InsetPicture(self._figure, self._run.scene, one, self._unit, self._words, self._style) for one in made]
+    def _whole_of(self, seen: Sight) -> InsetPicture | None:
+        """The whole mechanism, small, where the picture shows a part of it."""
+        if seen.whole is None or seen.box is None:
+            return None
+        return InsetPicture(
+            self._figure, self._run.scene, Inset("", seen.box, seen.whole), self._unit, self._words, self._style
+        )
+
+    def _labels_in(self, shared: Rooms) -> Labels:
+        names, view = self._extras.names, shared.sight.view
+        ways = []
+        for t in self._extras.ordered:
+            frames = {name: rows[0] for name, rows in poses(self._run, np.array([t])).items()}
+            matrix = view.matrix(view.centre_at(frames))
+            ways.append([name.seen(frames, matrix) for name in names])
+        return Labels(names, shared.names, self._words, np.array(ways).reshape(-1, len(names), 2))
+
+    def labels(self, frames: dict[str, Array], matrix: Array) -> list[Label]:
+        """The names on the parts, for the poses of an instant, in a picture with this map."""
+        return self._labels.at(frames, matrix) if self._labels is not None else []
 
     def arrows(self, matrix: Array, points: Array, forces: Array) -> list[LastingPatch]:
         """Arrows for forces (n, 2), N, at points (n, 2), m, in a picture with this map."""
@@ -125,10 +169,18 @@ class Beside:
 
     def draw(self, renderer: Any, t: float, frames: dict[str, Array], matrix: Array, marks: Marks, out_pixels: Pixels) -> None:
         """Draw everything for the poses of the instant `t`, in a picture whose map from metres is `matrix`."""
+        if self._labels is not None:
+            labels = self.labels(frames, matrix)
+            for patch in self._labels.lines(labels, self._style, self._unit):
+                patch.drawn_on(self._figure, self._frame.box).draw(renderer)
+            self._labels.write(labels, out_pixels)
         for picture in self._insets:
-            picture.place_in(matrix, frames, self.room).draw(renderer)
+            picture.place_in(matrix, frames, self._room).draw(renderer)
         for picture in self._insets:
             picture.draw(renderer, frames, marks, out_pixels)
+        if self._whole is not None:
+            self._whole.draw(renderer, frames, lambda _: [], out_pixels)
+            self._whole.outline_of(self._room, matrix, frames).draw(renderer)
         self._draw_key(renderer, out_pixels)
         if self._extras.phases:
             self._name_phase(self._extras.phase_at(t), out_pixels)
@@ -157,7 +209,7 @@ class Beside:
         """An arrow of a round force with its size, at the lower left of the mechanism."""
         if self._extras.scale <= 0.0:
             return
-        size, left, base = self._words.size, PAD * self._unit, self.room.bottom + 0.9 * self._words.size
+        size, left, base = self._words.size, self._room.left + PAD * self._unit, self._room.bottom + 0.9 * self._words.size
         length = self._extras.scale / self._extras.force * self._longest
         path = arrow_path(np.array([[left, base + 0.35 * size]]), np.array([[length, 0.0]]), self._longest)
         if path is not None:
@@ -203,19 +255,22 @@ class Stage:
         self._unit = relative_size(*size)
         layout = lay_out(self._figure, run, window, step or (window[1] - window[0]) / 2000.0, style)
         self._layout = layout if clock is None else replace(layout, clock=clock)
-        self._beside = Beside(self._figure, run, window, extras, layout.frame, layout.small.size, self._unit, style)
-        room = self._beside.room
-        self.view = view(run, window, room, zoom, turn)
-        self._beside.look_at(self.view)
+        shared = rooms(run, window, layout, extras, self._figure.bbox.height, zoom, turn)
+        self._beside = Beside(self._figure, run, window, extras, layout, shared, self._unit, style)
+        self.view = shared.sight.view
         draw_scale(self._figure, self.view.scale, style)
         draw_notes(self._figure, self._layout.frame, speed, self.view.turn, style)
         endless = any(not loop.closed for body in run.scene.bodies for loop in loops_of(body))
-        if zoom is not None or endless or self.view.follow is not None:
-            draw_rules(self._figure, room, style)
-        self._mechanism = Mechanism(self._figure, run.scene, self.view, room, self._unit, style, picked)
+        if zoom is not None or endless or self.view.follow is not None or shared.sight.whole is not None:
+            draw_rules(self._figure, shared.names, style)
+        self._mechanism = Mechanism(self._figure, run.scene, self.view, shared.names, self._unit, style, picked)
         draw_key(self._figure, [(edges.colour, edges.meaning) for edges in picked], style)
         self._canvas.draw()
         self._background = self._canvas.copy_from_bbox(self._figure.bbox)
+
+    def labels(self, frames: dict[str, Array]) -> list[Label]:
+        """The names on the parts as `draw` writes them for these poses; none without `Extras.names`."""
+        return self._beside.labels(frames, self.view.matrix(self.view.centre_at(frames)))
 
     def draw(
         self,

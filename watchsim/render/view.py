@@ -415,8 +415,13 @@ def _upright(run: Trajectory, points: Array, frame: Frame, traveller: Body | Non
         return -0.5 * math.pi - math.atan2(gy, gx)
     if traveller is not None:
         return 0.0
-    upright, quarter = fitted(points, frame, 0.0).scale, fitted(points, frame, -0.5 * math.pi).scale
-    return -0.5 * math.pi if quarter > QUARTER_GAIN * upright else 0.0
+    return upright(points, frame)
+
+
+def upright(points: Array, frame: Frame) -> float:
+    """The turn (rad) of a mechanism that lies flat: a quarter where it fills the frame clearly better so."""
+    as_drawn, quarter = fitted(points, frame, 0.0).scale, fitted(points, frame, -0.5 * math.pi).scale
+    return -0.5 * math.pi if quarter > QUARTER_GAIN * as_drawn else 0.0
 
 
 def fitted(points: Array, frame: Frame, turn: float, margin: float = MARGIN) -> View:

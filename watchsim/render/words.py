@@ -85,6 +85,10 @@ class Words:
         self._ink, self._background, self._weight = ink, background, weight
         self._image = lru_cache(KEPT)(self._drawn)
 
+    def width(self, text: str) -> int:
+        """Pixels that `text` takes."""
+        return self._image(text).shape[1]
+
     def write(self, text: str, x: float, baseline: float, out_pixels: Pixels, right: bool = False) -> None:
         """Copy `text` into the image from column `x` on, or up to it; the baseline is so many pixels above the bottom."""
         if not text:
