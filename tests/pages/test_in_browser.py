@@ -348,6 +348,27 @@ def crossing(one: Any, other: Any) -> bool:
     return bool(side(a, b, c) * side(a, b, d) < 0 and side(c, d, a) * side(c, d, b) < 0)
 
 
+def test_the_page_of_a_clock_opens_with_its_escapement_and_the_whole_beside_it(tmp_path: Path) -> None:
+    run = simulate(load(Path(str(profiles_dir())) / "graham" / "scene.toml"), duration=1.2, record="all")
+    with opened(report(run, tmp_path / "page.html")) as page:
+
+        def wide() -> float:
+            page.wait_for_timeout(100)
+            page.evaluate("watchsim.seek(watchsim.window[0])")
+            teeth = [polyline(loop, 1e-5) for loop in run.scene.body("wheel").loops if not loop.hole]
+            return float(np.ptp(page.evaluate("p => watchsim.seen('wheel', p)", np.concatenate(teeth).tolist()), axis=0)[0])
+
+        assert wide() > 250.0
+        left, top, width, height = page.evaluate("watchsim.corner()")
+        page.keyboard.press("0")
+        assert wide() < 100.0 and page.evaluate("watchsim.corner()") is None
+        page.keyboard.press("0")
+        assert wide() > 250.0 and page.evaluate("watchsim.corner()") == [left, top, width, height]
+        box = page.evaluate("document.getElementById('stage').getBoundingClientRect().toJSON()")
+        assert left > 0.0 and top > 0.0 and left + width < 0.3 * box["width"] and top + height < box["height"]
+        assert page.said == []
+
+
 @pytest.mark.parametrize("profile", ["swiss_lever", "coaxial", "graham", "pin_pallet", "cylinder"])
 def test_names_stand_apart_and_on_their_parts(profile: str, tmp_path: Path) -> None:
     scene = load(Path(str(profiles_dir())) / profile / "scene.toml")

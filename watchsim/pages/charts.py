@@ -8,13 +8,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from watchsim.pages.html import Markup, element
+from watchsim.pages.html import Markup, element, joined
 from watchsim.pages.player import path_data
 from watchsim.render.marks import decimals_for
+from watchsim.render.opening import sight, touching_room
 from watchsim.render.palette import BLUED, LIGHT, PALE_PICTURE_STYLE, mixed
 from watchsim.render.parts import Part
 from watchsim.render.rows import reduced
-from watchsim.render.view import Frame, View, Window, bounds, hairsprings, poses, room_of, view, zigzags
+from watchsim.render.view import Frame, View, Window, bounds, hairsprings, poses, room_of, zigzags
 from watchsim.simulation.trajectory import Array, Trajectory
 from watchsim.units import signed
 
@@ -155,6 +156,7 @@ def strip(entries: Sequence[tuple[str, float, int]], unit: str, description: str
 
 
 MARGIN = 0.04
+ASIDE = 0.3  # of a part's width: the most that the whole beside it takes
 MOST_POSTER = 150_000  # characters of path data; more than that is left to the player
 MM = 1e3
 COIL = 1e-3  # of its size, that a chord may stray from a hairspring
@@ -167,8 +169,9 @@ def poster(run: Trajectory, window: Window, parts: tuple[Part, ...], t: float) -
     if sum(map(len, drawn)) > MOST_POSTER:
         return Markup("")
     frames = {name: frame[0] for name, frame in poses(run, np.array([t])).items()}
-    seen = view(run, window, FRAME, None, None)
-    left, bottom, right, top = _box(run, window, seen, frames)
+    found = sight(run, window, FRAME, None, None, 1.0, 0.0)
+    seen, close = found.view, found.whole is not None
+    left, bottom, right, top = _box(run, window, seen, frames, close)
     pad = MARGIN * max(right - left, top - bottom)
     c, s = math.cos(seen.turn), math.sin(seen.turn)
     place = (c, -s, -s, -c, MM * (pad - left), MM * (pad + top))
@@ -186,14 +189,34 @@ def poster(run: Trajectory, window: Window, parts: tuple[Part, ...], t: float) -
         for number, spring in enumerate(zigzags(run.scene))
     ]
     width, height = MM * (right - left + 2.0 * pad), MM * (top - bottom + 2.0 * pad)
-    drawing, box = element("g", *coils, *groups, *lines, transform=_matrix(*place)), f"0 0 {width:.4f} {height:.4f}"
+    drawing = element("g", *coils, *groups, *lines, transform=_matrix(*place), id="drawn")
+    aside = 0.0
+    if close:
+        aside, whole = _beside(_box(run, window, seen, frames, False), place, width, height)
+        edges = element("clipPath", element("rect", width=f"{width:.4f}", height=f"{height:.4f}"), id="part")
+        drawing = joined((edges, element("g", drawing, clip_path="url(#part)"), whole))
+    box = f"{-aside:.4f} 0 {width + aside:.4f} {height:.4f}"
     return element("svg", drawing, id="poster", viewBox=box, role="img", aria_label=f"The mechanism at {t:.6g} s")
 
 
-def _box(run: Trajectory, window: Window, seen: View, frames: dict[str, Array]) -> tuple[float, float, float, float]:
-    """Least and largest x and y (m) in the turned picture."""
+def _beside(box: tuple[float, ...], place: tuple[float, ...], width: float, height: float) -> tuple[float, Markup]:
+    """What the whole, within `box` (m), takes on the left of a picture (mm) whose map `place` shows a part; and the whole."""
+    left, bottom, right, top = (MM * value for value in box)
+    scale = min(ASIDE * width / (right - left), (1.0 - 2.0 * MARGIN) * height / (top - bottom))
+    taken = scale * (right - left) + 2.0 * MARGIN * width
+    # The map of the part puts a point (x, y) of the turned picture at (place[4] + x, place[5] - y).
+    x, y = MARGIN * width - taken - scale * (place[4] + left), MARGIN * height - scale * (place[5] - top)
+    return taken, element("use", href="#drawn", transform=_matrix(scale, 0.0, 0.0, scale, x, y))
+
+
+def _box(
+    run: Trajectory, window: Window, seen: View, frames: dict[str, Array], close: bool
+) -> tuple[float, float, float, float]:
+    """Least and largest x and y (m) in the turned picture, of everything or, `close`, of what touches."""
     if seen.follow is None:
-        (left, bottom), (right, top) = (end.tolist() for end in bounds(room_of(run, window, None)[0], seen.turn))
+        points = touching_room(run, window) if close else None
+        points = room_of(run, window, None)[0] if points is None else points
+        (left, bottom), (right, top) = (end.tolist() for end in bounds(points, seen.turn))
         return left, bottom, right, top
     c, s = math.cos(seen.turn), math.sin(seen.turn)
     x, y = seen.centre_at(frames)

@@ -24,6 +24,7 @@ from watchsim.geometry.primitives import Arc
 from watchsim.pages.solids import packed_solids
 from watchsim.render.marks import ContactMarks, goes_round
 from watchsim.render.movie import busy
+from watchsim.render.opening import CLOSER, touching_room
 from watchsim.render.palette import BLUED, FIXED, Finish, looks
 from watchsim.render.part_names import part_names
 from watchsim.render.parts import Part, is_round, loops_of, outline, parts, spoke
@@ -553,9 +554,13 @@ def _view(run: Trajectory, window: Window) -> dict[str, Any]:
     turns = (0.0, -0.5 * np.pi) if free else (chosen.turn,)
     found: dict[str, Any] = {
         "turn": chosen.turn,
+        "closer": CLOSER,
         "free": free,  # up may be chosen to fit the screen
         "boxes": [[turn, *np.concatenate(bounds(points, turn)).tolist()] for turn in turns],
     }
+    close = None if traveller is not None else touching_room(run, window)
+    if close is not None:
+        found["close"] = [np.concatenate(bounds(close, turn)).tolist() for turn in turns]
     if chosen.follow is not None:
         found["follow"] = {
             "body": [body.name for body in run.scene.bodies].index(chosen.follow),

@@ -122,6 +122,7 @@ const open = (told) => {
   $("push").disabled = !contacts.known; $("tick").disabled = !sound.any; $("back").disabled = $("next").disabled = !data.events.length;
   readLook();
   resize();
+  if (!old) view.open();
   const shown = old && old.data.bodies[old.plots.body], first = data.bodies.findIndex((body, b) => shown && body.name === shown.name && motion.rows[b]);
   const usual = first >= 0 ? first : data.ranks.find((b) => motion.rows[b]) ?? curves.movers[0];
   document.querySelector(".plots").hidden = usual === undefined;
@@ -230,7 +231,8 @@ const followNext = () => {
   showPlots(b);
 };
 const zoomBy = (factor) => { view.zoomAt(factor, 0.5 * view.width, 0.5 * view.height); dirty = true; };
-const fit = () => { view.reset(); solids.level(); player.chosen = -1; resize(); };
+// Everything; where that is in sight already, what touches.
+const fit = () => { const whole = view.zoom === 1 && !view.anchor; view.reset(); solids.level(); player.chosen = -1; resize(); if (whole) view.open(); };
 // Dragging moves the flat picture and turns the solids, which Shift moves.
 const shift = (x, y, moves = false) => { if (solids.on && !moves) solids.orbit(x, y); else view.pan(x, y); dirty = true; };
 const nudge = (way) => { player.toggle(false); player.seek(player.t + (way * (plots.range[1] - plots.range[0])) / 500); };
@@ -315,6 +317,7 @@ window.watchsim = {
   closed: (t) => { const poses = motion.poses(t); return contacts.all.filter((one) => one.holds(t)).map((one) => ({ name: one.name, force: one.press(t), place: one.touch(view, poses).slice(0, 2) })); },
   value: (plot, t) => curves.of(plots.body)[plot].lines[0].value(t),
   names: () => { const poses = motion.poses(player.t); view.aim(poses); return names.placed(ctx, view, poses, look, false); },
+  corner: () => view.corner,
   coils: () => { const poses = motion.poses(player.t); return scenery.coils.map((coil) => coil.pathData(poses)); },
   zigzags: () => { const poses = motion.poses(player.t); return scenery.zigzags.map((one) => one.pathData(view, poses)); },
   parts: () => scenery.parts.map(({ body, layer, pale }) => ({ body, layer, pale: Boolean(pale) })),

@@ -6,6 +6,7 @@ class Player {
   constructor(data, parts) {
     Object.assign(this, parts);
     [this.start, this.end] = data.window;
+    this.whole = new View(data);
     this.t = data.opening;
     this.events = data.events;
     this.times = Float64Array.from(data.events, ([t]) => t);
@@ -81,7 +82,28 @@ class Player {
     this.scenery.draw(ctx, this.view, poses, own);
     if (this.points || this.arrows) this.contacts.draw(ctx, this.view, poses, this.t, own, this.points, this.arrows);
     if (this.names.on) this.names.draw(ctx, this.view, poses, own, this.playing);
+    this.beside(ctx, poses, own);
     this.ruler(ctx, look);
+  }
+
+  // The whole, small, with a rectangle around what is shown.
+  beside(ctx, poses, look) {
+    const box = this.view.corner, { whole, view } = this;
+    if (!box) return;
+    const [left, top, width, height] = box;
+    whole.resize(width, height, view.ratio, 3); whole.origin = [left, top]; whole.turn = view.turn;
+    whole.base = whole.fits(view.room); whole.home = view.home; whole.aim(poses);
+    ctx.save();
+    view.plain(ctx);
+    ctx.beginPath(); ctx.rect(left, top, width, height); ctx.clip();
+    ctx.fillStyle = look.paper; ctx.fill();
+    this.scenery.draw(ctx, whole, poses, { ...look, small: true });
+    whole.plain(ctx);
+    const [a, b] = [view.world(0, 0), view.world(view.width, view.height)].map((place) => whole.screen(...place));
+    ctx.strokeStyle = look.contact; ctx.lineWidth = 1.2; ctx.strokeRect(a[0], a[1], b[0] - a[0], b[1] - a[1]);
+    ctx.restore();
+    view.plain(ctx);
+    ctx.strokeStyle = look.faint; ctx.lineWidth = 1; ctx.strokeRect(left, top, width, height);
   }
 
   // A bar of a round length.

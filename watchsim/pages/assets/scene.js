@@ -68,13 +68,13 @@ class Scenery {
       ctx.beginPath(); ctx.moveTo(body.spoke[0], 0); ctx.lineTo(body.spoke[1], 0); ctx.stroke();
     });
     ctx.globalAlpha = 1;
-    this.bodies.forEach((body, b) => { if (body.motion === "pivot") this.ring(ctx, view, poses, b, look); });
+    if (!look.small) this.bodies.forEach((body, b) => { if (body.motion === "pivot") this.ring(ctx, view, poses, b, look); });
     for (const zigzag of this.zigzags) zigzag.draw(ctx, view, poses, look);
     this.haunted(ctx, view, poses, look);
   }
 
   shadow(ctx, view, poses, part, look) {
-    if (part.strokes || look.faded.has(part.body)) return;
+    if (part.strokes || look.small || look.faded.has(part.body)) return;
     ctx.fillStyle = look.shade;
     view.place(ctx, poses, part.body, 2, 3);
     ctx.fill(part.path);
@@ -89,7 +89,7 @@ class Scenery {
     if (!fixed) { ctx.fillStyle = worn(part.fill); ctx.fill(part.path); }
     if (fixed && part.strokes) { ctx.strokeStyle = look.ground; ctx.lineWidth = 0.9 / view.scale; ctx.stroke(part.strokes); }
     ctx.strokeStyle = fixed ? look.ground : worn(part.edge);
-    ctx.lineWidth = (fixed ? 1.9 : THIN) / view.scale;
+    ctx.lineWidth = ((fixed ? 1.9 : THIN) * (look.small ? 0.5 : 1)) / view.scale;
     ctx.stroke(part.path);
     if (part.body === look.chosen) { ctx.strokeStyle = look.accent; ctx.lineWidth = 2 / view.scale; ctx.stroke(part.path); }
     ctx.globalAlpha = 1;

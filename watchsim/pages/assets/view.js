@@ -1,5 +1,6 @@
 // Which place of the mechanism is seen where on the screen?
 const MARGIN = 0.05, QUARTER_GAIN = 1.25, CLOSEST = 4000, FARTHEST = 0.2, BAND = 34;
+const WHOLE = 0.2, OVER = 84, UNDER = 56; // of the width that the whole takes beside a part of it; CSS pixels free above and below it
 
 class View {
   constructor(data) {
@@ -8,22 +9,54 @@ class View {
     this.zoom = 1; this.shift = [0, 0]; // of the picture, in metres of the mechanism
     this.turn = this.data.turn;
     this.centre = [0, 0]; this.base = 1;
+    this.origin = [0, 0]; // of the picture on its canvas, CSS pixels
     this.anchor = null; // a point of a body that stays in the middle: [body, x, y]
   }
 
   get scale() { return this.base * this.zoom; } // CSS pixels per metre
 
-  resize(width, height, ratio) {
-    Object.assign(this, { width, height, ratio });
-    const high = Math.max(height - 2 * BAND, 40);
-    const fits = (box) => (1 - 2 * MARGIN) * Math.min(width / Math.max(box[3] - box[1], 1e-12), high / Math.max(box[4] - box[2], 1e-12));
+  resize(width, height, ratio, band = BAND) {
+    Object.assign(this, { width, height, ratio, band });
     if (this.data.follow) { this.base = Math.min(height, width * 0.5625) / this.data.follow.sight; return; }
-    let box = this.data.boxes[0];
-    if (this.data.boxes.length > 1 && fits(this.data.boxes[1]) > QUARTER_GAIN * fits(box)) box = this.data.boxes[1];
-    this.turn = box[0];
-    this.base = fits(box);
-    const c = Math.cos(this.turn), s = Math.sin(this.turn), x = 0.5 * (box[1] + box[3]), y = 0.5 * (box[2] + box[4]);
-    this.home = [c * x + s * y, -s * x + c * y];
+    const { boxes } = this.data, room = boxes.map((box) => box.slice(1)), shown = this.opens ? this.data.close : room;
+    const k = boxes.length > 1 && this.fits(shown[1]) > QUARTER_GAIN * this.fits(shown[0]) ? 1 : 0;
+    this.turn = boxes[k][0]; this.room = room[k];
+    this.base = this.fits(this.room);
+    this.home = this.middle(this.room);
+  }
+
+  // CSS pixels per metre that show a box (x, y to x, y of the turned picture), beside what takes `aside` pixels.
+  fits(box, aside = 0) { return (1 - 2 * MARGIN) * Math.min((this.width - aside) / Math.max(box[2] - box[0], 1e-12), Math.max(this.height - 2 * this.band, 40) / Math.max(box[3] - box[1], 1e-12)); }
+
+  middle(box) {
+    const c = Math.cos(this.turn), s = Math.sin(this.turn), x = 0.5 * (box[0] + box[2]), y = 0.5 * (box[1] + box[3]);
+    return [c * x + s * y, -s * x + c * y];
+  }
+
+  get aside() { return 14 + WHOLE * this.width; }
+
+  // Is what touches so small that the page opens with it, and with the whole beside it?
+  get opens() {
+    const { close, closer, boxes } = this.data;
+    return Boolean(close) && Math.max(...close.map((box) => this.fits(box, this.aside))) > closer * Math.max(...boxes.map((box) => this.fits(box.slice(1))));
+  }
+
+  // What touches, beside the whole; everything where that is hardly smaller.
+  open() {
+    this.reset();
+    if (!this.opens) return;
+    const box = this.data.close[this.data.boxes.findIndex(([turn]) => turn === this.turn)], at = this.middle(box);
+    this.zoom = this.fits(box, this.aside) / this.base;
+    const c = Math.cos(this.turn), s = Math.sin(this.turn), right = (0.5 * this.aside) / this.scale; // of the picture, which the box on the left moves
+    this.shift = [at[0] - c * right - this.home[0], at[1] + s * right - this.home[1]];
+  }
+
+  // Where the whole stands small beside a part of it: left, top, width, height; null where all is in sight.
+  get corner() {
+    if (this.data.follow || this.zoom < this.data.closer) return null;
+    const [x0, y0, x1, y1] = this.room, most = this.height - OVER - UNDER, wide = (x1 - x0) / Math.max(y1 - y0, 1e-12);
+    const width = Math.min(WHOLE * this.width, wide < 1 ? Math.max(most * wide, 0.5 * WHOLE * this.width) : Infinity), height = Math.min(most, Math.max(width / wide, 24));
+    return most < 40 ? null : [14, OVER, width, height];
   }
 
   // Put the middle of the picture where it belongs for these poses.
@@ -52,11 +85,11 @@ class View {
 
   screen(x, y) {
     const dx = x - this.centre[0], dy = y - this.centre[1];
-    return [0.5 * this.width + this.c * dx - this.s * dy, 0.5 * this.height - this.s * dx - this.c * dy];
+    return [this.origin[0] + 0.5 * this.width + this.c * dx - this.s * dy, this.origin[1] + 0.5 * this.height - this.s * dx - this.c * dy];
   }
 
   world(px, py) {
-    const dx = (px - 0.5 * this.width) / this.scale, dy = (0.5 * this.height - py) / this.scale, c = Math.cos(this.turn), s = Math.sin(this.turn);
+    const dx = (px - this.origin[0] - 0.5 * this.width) / this.scale, dy = (this.origin[1] + 0.5 * this.height - py) / this.scale, c = Math.cos(this.turn), s = Math.sin(this.turn);
     return [this.centre[0] + c * dx + s * dy, this.centre[1] - s * dx + c * dy];
   }
 
