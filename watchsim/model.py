@@ -106,7 +106,8 @@ COORDINATE = np.dtype(
         ("driven", "i8"),  # 1: its motion is prescribed, no contact changes it
         ("force", "f8"),  # constant part, N or N·m
         *((law, "f8") for law in DAMPING_LAWS),
-        ("coulomb", "f8"),  # dry friction of the bearing, N or N·m
+        ("coulomb", "f8"),  # dry friction of the bearing, N or N·m; of a loaded one what it is without contacts, poised
+        ("loaded", "i8"),  # 1: friction of the bearing goes with its load, see BEARING
         ("stiffness", "f8"),
         ("cubic", "f8"),  # of the spring: force by the cube of the way from rest, N·m/rad³ or N/m³
         ("rest", "f8"),
@@ -149,6 +150,19 @@ LINE_SPRING = np.dtype(
         ("stiffness", "f8"),
         ("length", "f8"),  # without force
         ("viscous", "f8"),
+    ]
+)
+
+# A pivot whose friction goes with what it carries; `coulomb` of its coordinate holds what its weight alone makes.
+BEARING = np.dtype(
+    [
+        ("body", "i8"),
+        ("coordinate", "i8"),
+        ("grip", "f8"),  # m: friction by load, coefficient times radius
+        ("moment_x", "f8"),  # kg·m: mass times centre of mass, in the body's frame
+        ("moment_y", "f8"),
+        ("weight_x", "f8"),  # N
+        ("weight_y", "f8"),
     ]
 )
 
@@ -251,6 +265,7 @@ class Model(NamedTuple):
     coordinates: Records
     joints: Records
     lines: Records
+    bearings: Records
     tables: Records
     knots: NDArray[np.float64]  # (knots, 2) abscissa, value of all tables
     primitives: Records

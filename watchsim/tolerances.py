@@ -31,6 +31,14 @@ PLACE_ROUNDING = 1e-14
 # Of the first pivot: smaller ones are zero, forces then not unique. Large: stiff pairs merge; small: forces of rounding.
 RANK = 1e-11
 
+# --- Loads of bearings, as shares of their friction ---
+
+# What still changes when the iteration ends. Large: forces and friction contradict each other; small: rounds of rounding.
+LOAD_SETTLED = 1e-13
+# The same after all rounds, where redundant or nearly singular forces are known to no more. Large: what jams passes; small:
+# what does not is refused.
+LOAD_ROUGH = 1e-9
+
 # --- Complementarity problems, in the scaling of lcp/scaling.py ---
 
 # Of unit diagonals: mutual coefficients left by rounding. Large: units misjudged; small: noise scales rows.

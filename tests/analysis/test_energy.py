@@ -17,6 +17,7 @@ from scipy.integrate import quad
 from watchsim.analysis.flows import Flows, efficiency, flows, work_of_gravity
 from watchsim.mechanism.compile import compile_scene
 from watchsim.model import (
+    BEARING,
     BODY,
     BODY_PAIR,
     CONTACT,
@@ -42,7 +43,8 @@ from watchsim.simulation.simulate import simulate
 
 def model_of(**parts: Any) -> Any:
     """`coordinates`: {field: values by coordinate}; `joints`, `tables`: lists of {field: value}; tables bring their knots."""
-    none = {"bodies": BODY, "lines": LINE_SPRING, "primitives": PRIMITIVE, "contacts": CONTACT, "laws": LAW, "pairs": BODY_PAIR}
+    none = {"bodies": BODY, "lines": LINE_SPRING, "bearings": BEARING, "primitives": PRIMITIVE, "contacts": CONTACT}
+    none |= {"laws": LAW, "pairs": BODY_PAIR}
     made: dict[str, Any] = {name: records(dtype, 0) for name, dtype in none.items()} | {"near": np.zeros(0, np.int64)}
     made["coordinates"] = records(COORDINATE, len(parts["coordinates"]["mass"]))
     for name, values in parts["coordinates"].items():

@@ -42,7 +42,7 @@ class Sparse:
         coordinates.mass, coordinates.load = rng.uniform(0.4, 3.0, n), rng.uniform(0.1, 2.0, n)
         contacts.group = rng.permutation(2 * m)
         laws.friction = friction * rng.uniform(0.5, 1.0, 2 * m)
-        self.model = SimpleNamespace(coordinates=coordinates, contacts=contacts, laws=laws)
+        self.model = SimpleNamespace(coordinates=coordinates, contacts=contacts, laws=laws, bearings=[])
         self.friction = np.array([laws[contacts[k].group].friction for k in numbers])
         self.bars = np.ravel([self.closed.kin.bar_N[:m], self.closed.kin.bar_T[:m]], order="F")
         self.work.system.inverse[:] = 1.0 / coordinates.mass

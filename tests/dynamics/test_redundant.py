@@ -137,7 +137,7 @@ def test_forces_do_not_turn_what_dry_friction_holds() -> None:
     (a, b), (c, d), moment, dry = (1.5, 0.4), (1.0, -0.8), 2.0, 0.6
     case = Case(np.array([0.3, 0.5]), np.array([[a, c], [b, d]]), np.array([0.9]), np.zeros(1))
     case.model.coordinates.flags.writeable = True
-    case.model.coordinates[1].coulomb = dry
+    case.work.system.dry[1] = dry
     case.model.coordinates.flags.writeable = False  # machine code for arrays that can be written would be another one
     case.work.system.h[:], case.work.system.inverse[:] = [-moment, 0.0], [1.0 / 0.3, 0.0]
     case.closed.kin.bar_N[:], case.closed.kin.bar_T[:] = 0.0, 0.0

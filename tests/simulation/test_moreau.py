@@ -404,7 +404,7 @@ def test_percussions_move_by_whole_matrices_bearings_behind_contacts(dry: list[i
 
 def stopped(case: Sparse, u: np.ndarray, slowest: float) -> tuple[bool, SimpleNamespace, SimpleNamespace, np.ndarray]:
     """(is any written down?, room, state, events) of the impacts at the start of a step."""
-    work, sums = room_of(case, []), SimpleNamespace(drive=0.5, impacts=0.25)
+    work, sums = room_of(case, []), SimpleNamespace(drive=0.5, impacts=0.25, damping=0.0)
     counts = SimpleNamespace(lcp=0, lcp_sizes=[0] * 6, lcp_failures=0, energy_rescues=0, impacts=0, events=0)
     state = SimpleNamespace(u=u, sums=sums, counts=counts, clock=SimpleNamespace(time=3.5))
     record = SimpleNamespace(events=np.zeros(4, EVENT_DTYPE).view(np.recarray), used=SimpleNamespace(events=0))

@@ -13,11 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.contact.gaps import OPEN, STICK, closed_contacts, poses
-from watchsim.dynamics.forces import Seen, balance, room
+from watchsim.dynamics.bearings import LOAD_ROUNDS
+from watchsim.dynamics.forces import Seen, balance, line_spring_pulls, room
 from watchsim.mechanism.compile import Compiled
 from watchsim.simulation.state import EventKind
 from watchsim.simulation.trajectory import Array, Trajectory
 from watchsim.storage.columns import blocks
+from watchsim.tolerances import LOAD_ROUGH
 
 # Events say how modes change. At the first of the times a contact's mode follows from the last event of its own; from there
 # on each event is followed.
@@ -133,21 +135,55 @@ class Mechanism:
         model = self.model = compiled.model
         self.mobility, self.dry = 1.0 / np.asarray(model.coordinates.mass), np.asarray(model.coordinates.coulomb)
         self.prescribed = np.asarray(model.coordinates.driven) != 0
+        contacts, primitives = model.contacts, model.primitives
+        self.sides = primitives.body[contacts.a], primitives.body[contacts.b]
         self.laws = model.laws[np.asarray(model.contacts.group)]
 
     def balanced(self, t: Array, q: Array, u: Array, modes: Mapping[int, int]) -> Balanced:
         """Forces of the contacts in `modes` at times t (n,) with coordinates q and velocities u (n, coordinates)."""
         ids = np.array(sorted(modes), np.int64)
         seen = self.seen(t, q, u, ids)
-        held = (self.dry > 0.0) & (u == 0.0)
+        held = ((self.dry > 0.0) | (np.asarray(self.model.coordinates.loaded) != 0)) & (u == 0.0)
         mobility = np.where(held | self.prescribed, 0.0, self.mobility)
-        h = seen.h - self.dry * np.sign(u)
-        free = np.where(self.prescribed, h, mobility * h)
         codes = np.array([modes[k] for k in ids.tolist()])
         slip = np.einsum("nmc,nc->nm", seen.w_T, u) + 0.0 if len(ids) else np.zeros((len(t), 0))
-        force = self._forces(seen, mobility, free, self._coefficients(ids, codes, slip), codes)
-        load = (force[:, :, :1] * seen.w_N + force[:, :, 1:] * seen.w_T).sum(axis=1)
-        return Balanced(ids, force, seen.normal, seen.point, load, free + mobility * load)
+        friction, dry = self._coefficients(ids, codes, slip), np.broadcast_to(self.dry, u.shape)
+        for _ in range(LOAD_ROUNDS):
+            h = seen.h - dry * np.sign(u)
+            free = np.where(self.prescribed, h, mobility * h)
+            force = self._forces(seen, mobility, free, friction, codes)
+            load = (force[:, :, :1] * seen.w_N + force[:, :, 1:] * seen.w_T).sum(axis=1)
+            found = Balanced(ids, force, seen.normal, seen.point, load, free + mobility * load)
+            loaded = self.rubbed(found, q, u)
+            if np.allclose(loaded, dry, rtol=LOAD_ROUGH, atol=0.0):
+                break
+            dry = loaded
+        return found
+
+    def rubbed(self, found: Balanced, q: Array, u: Array) -> Array:
+        """Dry friction of the bearings (n, coordinates), N·m or N; with a load, by what it is."""
+        dry = np.broadcast_to(self.dry, u.shape)
+        across = np.stack((-found.normal[:, :, 1], found.normal[:, :, 0]), axis=2)
+        pressed = found.force[:, :, :1] * found.normal + found.force[:, :, 1:] * across
+        for one in self.model.bearings:
+            j, (on_a, on_b) = int(one.coordinate), (side[found.ids] == one.body for side in self.sides)
+            body = self.model.bodies[one.body]
+            c, s = np.cos(body.ratio * q[:, j] + body.phase), np.sin(body.ratio * q[:, j] + body.phase)
+            arm = np.stack((c * one.moment_x - s * one.moment_y, s * one.moment_x + c * one.moment_y), axis=1)
+            weight = np.array([one.weight_x, one.weight_y])
+            carried = np.einsum("k,nkx->nx", on_b.astype(float) - on_a, pressed) - weight
+            carried -= u[:, j : j + 1] ** 2 * arm - found.acceleration[:, j : j + 1] * np.stack((-arm[:, 1], arm[:, 0]), axis=1)
+            carried -= self._pulled(int(one.body), q, u)
+            dry = np.array(dry)
+            dry[:, j] += one.grip * (np.hypot(*carried.T) - np.hypot(*weight))
+        return np.asarray(dry)
+
+    def _pulled(self, body: int, q: Array, u: Array) -> Array:
+        """The force of springs between points on a body, N (n, 2)."""
+        pulled = np.zeros((len(q), 2))
+        if len(self.model.lines):
+            line_spring_pulls(self.model, body, np.ascontiguousarray(q), np.ascontiguousarray(u), pulled)
+        return pulled
 
     def seen(self, t: Array, q: Array, u: Array, ids: NDArray[np.int64]) -> Seen:
         """Kinematics of these contacts, and all other forces."""

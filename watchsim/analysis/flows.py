@@ -13,12 +13,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.analysis.forces import Forces, absolute, forces
+from watchsim.analysis.forces import Forces, absolute, bearing_friction, forces
 from watchsim.dynamics.forces import line_spring_energies, line_spring_powers
 from watchsim.mechanism.compile import Compiled
 from watchsim.model import DAMPING_LAWS, FREE, OVER_TIME, REPEATED, Model, resistance
 from watchsim.scene.roles import keeps_time, roles
+from watchsim.scene.scene import STATISTICS
 from watchsim.scene.trains import start_poses
+from watchsim.simulation import EVENT_DRIVEN
 from watchsim.simulation.state import EventKind
 from watchsim.simulation.trajectory import Array, Trajectory, frames, speeds
 from watchsim.tolerances import LEDGER_SHARE
@@ -183,6 +185,9 @@ def flows(run: Trajectory, compiled: Compiled, rows: slice = slice(None)) -> Flo
                 held, taken = line_spring_power(model, place(node), us)
                 driven += weight * step * held
                 damped += weight * step * taken
+            if len(model.bearings) and run.keep != STATISTICS and run.method == EVENT_DRIVEN:
+                dry = bearing_friction(run, t[:-1] + node * h)
+                damped += weight * step * _rows(model, {k: np.abs(v) for k, v in us.items()}) * (dry - np.asarray(c.coulomb))
     free = _in_flight(model, own, (q, u, a)) & (h > 0.0)[:, None]
     damped = np.where(free, own[:-1] - own[1:] + driven, damped)
     swept = step * (0.5 * (q[:-1] + q[1:]) + step * (0.1 * (u[:-1] - u[1:]) + step * (a[:-1] + a[1:]) / 120.0))
@@ -223,7 +228,7 @@ def _changing(model: Model) -> tuple[list[int], list[int]]:
     integrated."""
     c = model.coordinates
     moved = {int(k) for joint in model.joints if c.driven[joint.on] for k in (joint.coordinate, joint.on)}
-    slowed = {int(k) for k in np.flatnonzero(np.any([c[law] != 0.0 for law in ("coulomb", *DAMPING_LAWS)], axis=0))}
+    slowed = {int(k) for k in np.flatnonzero(np.any([c[law] != 0.0 for law in ("coulomb", "loaded", *DAMPING_LAWS)], axis=0))}
     for table in model.tables:
         moved |= {int(table.coordinate), *([int(table.on)] if table.on >= 0 else [])}
     for joint in model.joints:

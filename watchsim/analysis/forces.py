@@ -282,6 +282,18 @@ def forces(run: Trajectory, times: Iterable[float] | float | None = None) -> For
     return out
 
 
+def bearing_friction(run: Trajectory, times: Array) -> Array:
+    """Dry friction of the bearings at times (n,) of a run by events, N·m or N (n, coordinates); with a load, by what it is."""
+    compiled = compile_scene(run.scene)
+    mechanism = Mechanism(compiled)
+    q, u = run.sample(times)
+    q, u = absolute(compiled, q, False), absolute(compiled, u, True)
+    dry = np.zeros(q.shape)
+    for in_force, rows in modes_in_force(run, times).items():
+        dry[rows] = mechanism.rubbed(mechanism.balanced(times[rows], q[rows], u[rows], dict(in_force)), q[rows], u[rows])
+    return dry
+
+
 def just_before(edges: Array, share: float) -> Array:
     """Times that a `share` of every stretch between `edges` (s) separates from its end: what is in force in it still is."""
     return np.asarray(edges[1:] - np.maximum(share * np.diff(edges), np.spacing(edges[1:])))

@@ -268,6 +268,8 @@ KINEMATICS = np.dtype(
         ("margin", "f8"),  # how far inside its primitives the contact lies, m
         ("x", "f8"),  # contact point in the world
         ("y", "f8"),
+        ("nx", "f8"),  # outward normal of B's material
+        ("ny", "f8"),
     ]
 )
 SLOTS = 8  # a contact moves at most two bodies, each carried by a free one
@@ -390,7 +392,7 @@ def contact_kinematics(model, k, pose, row, out_closed):
         kin.bar_size += rounded * rounded / (reach_a + reach_b)
     inside_a, inside_b = margins_of(contact, a, b, pa, pb, shape)
     kin.margin = min(inside_a, inside_b)
-    kin.x, kin.y = pa.x + xa, pa.y + ya
+    kin.x, kin.y, kin.nx, kin.ny = pa.x + xa, pa.y + ya, nx, ny
     out_closed.ids[row] = k
     out_closed.slots[row] = 0
     _directions(model, a.body, row, 1.0, (nx, ny, xa, ya), out_closed)

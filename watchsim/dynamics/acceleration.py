@@ -18,6 +18,7 @@ from watchsim.dynamics.friction import (
     jams,
     keep_basis,
     law_of,
+    load_bearings,
     press_unloaded,
     read_forces,
     solve_contacts,
@@ -159,17 +160,17 @@ def decide_modes(model, closed, m, bearings, speed_zero, system, problem, out_gr
     for i in range(m):
         if out_mode[closed.ids[i]] == OPEN:
             system.force[2 * i], system.force[2 * i + 1] = 0.0, 0.0
-    _decide_grips(model, m, bearings, problem, system, out_grip)
+    _decide_grips(m, bearings, problem, system, out_grip)
     return True
 
 
 @kernel
 def _solve(model, closed, m, bearings, speed_zero, system, problem):
     """Pose the problem and solve it, forces into `system.force`; returns the number of elements, -1 without a solution."""
-    elements = _elements(model, closed, m, bearings, speed_zero, problem)
+    elements = _elements(model, closed, m, bearings, speed_zero, system, problem)
     choose_signs(system.G, system.b, m, 2 * m + bearings, elements, problem)
     fill_matrix(system.G, m, elements, problem)
-    _load(system, m, elements, bearings, problem)
+    load_bearings(system.G, system.b, m, elements, bearings, problem)
     fill_rhs(problem.loaded, m, elements, problem)
     pressed = press_unloaded(model, closed, m, system, problem)
     solver = solve_contacts(m, elements, bearings, Level.ACCELERATION, problem)
@@ -198,7 +199,7 @@ def _begin_sliding(model, closed, m, elements, bearings, system, problem):
 
 
 @kernel
-def _elements(model, closed, m, bearings, speed_zero, problem):
+def _elements(model, closed, m, bearings, speed_zero, system, problem):
     """The contacts that may stick, then the bearings; returns how many."""
     elements = 0
     for i in range(m):
@@ -210,20 +211,9 @@ def _elements(model, closed, m, bearings, speed_zero, problem):
             problem.element[i], problem.drag[i] = elements, friction
             elements = add_element(problem, i, elements, (2.0 * friction, 0.0, 0.0))
     for p in range(bearings):
-        dry = model.coordinates[problem.bearing[p]].coulomb
+        dry = system.dry[problem.bearing[p]]
         elements = add_element(problem, m + p, elements, (0.0, 2.0 * dry, -dry))
     return elements
-
-
-@kernel
-def _load(system, m, elements, bearings, problem):
-    """Accelerations without contact forces, bearings at the lower end of their friction, into `problem.loaded`."""
-    for row in range(2 * m + bearings):
-        problem.loaded[row] = system.b[row]
-        for p in range(bearings):
-            # The elements of the bearings are the last ones, in order.
-            force = problem.friction_sign[2 * m + p] * problem.shift[elements - bearings + p]
-            problem.loaded[row] += system.G[row, 2 * m + p] * force
 
 
 @kernel
@@ -268,16 +258,16 @@ def _mode_of(closed, i, m, elements, bearings, system, problem):
 
 
 @kernel
-def _decide_grips(model, m, bearings, problem, system, out_grip):
+def _decide_grips(m, bearings, problem, system, out_grip):
     """The grips of the bearings that stood; those held get no inverse mass, those that begin to move their friction."""
     rows = 2 * m + bearings
     for p in range(bearings):
         i, row = problem.bearing[p], 2 * m + p
         moves = _row_acceleration(system, rows, row)
-        terms = row_terms(system, problem.drag, m, rows, row) + system.inverse[i] * model.coordinates[i].coulomb
+        terms = row_terms(system, problem.drag, m, rows, row) + system.inverse[i] * system.dry[i]
         if abs(moves) > ACCELERATION_ROUNDING * terms:
             out_grip[i] = FORWARD if moves > 0.0 else BACKWARD
-            system.h[i] -= out_grip[i] * model.coordinates[i].coulomb
+            system.h[i] -= out_grip[i] * system.dry[i]
     for p in range(bearings):
         if out_grip[problem.bearing[p]] == STICK:
             system.inverse[problem.bearing[p]] = 0.0

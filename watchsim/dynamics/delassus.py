@@ -30,6 +30,11 @@ class ContactSystem(NamedTuple):
     size: Array  # (rows,) the same with all terms taken positive: the scale of rounding
     normal_scale: Array  # (room,) normal force that a contact's own terms alone make: the scale of its rounding
     force: Array  # (rows,) lambda
+    dry: Array  # (n,) dry friction of the bearings, N or N·m; of those with a load what it makes now, see `bearings`
+    a: Array  # (n,) accelerations with which loads were found
+    arm: Array  # (n, 2) by bearing with a load: mass times the way from the pivot to the centre of mass, kg·m
+    pull: Array  # (n, 2) what it carries without contacts and angular acceleration, N
+    press: Array  # (n, 2) what it carries but for angular acceleration, N or N·s
 
 
 ContactSystemRef = by_reference(ContactSystem, __name__)
@@ -38,8 +43,9 @@ ContactSystemRef = by_reference(ContactSystem, __name__)
 def contact_system(room: int, coordinates: int) -> ContactSystem:
     """For `room` closed contacts and as many bearings as coordinates."""
     n, rows = coordinates, 2 * room + coordinates
-    lengths = {"h": n, "inverse": n, "b": rows, "size": rows, "normal_scale": room, "force": rows}
-    return ContactSystem(G=np.zeros((rows, rows)), **{name: np.zeros(length) for name, length in lengths.items()})
+    lengths = {"h": n, "inverse": n, "b": rows, "size": rows, "normal_scale": room, "force": rows, "dry": n, "a": n}
+    parts = {name: np.zeros(length) for name, length in lengths.items()}
+    return ContactSystem(G=np.zeros((rows, rows)), **parts, **{name: np.zeros((n, 2)) for name in ("arm", "pull", "press")})
 
 
 @kernel

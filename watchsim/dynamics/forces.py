@@ -87,6 +87,20 @@ def add_line_springs(model, q, u, out_h):
 
 
 @kernel
+def line_spring_pull(model, b, q, u):
+    """The force of all of them on body b, N."""
+    fx, fy = 0.0, 0.0
+    for j in range(len(model.lines)):
+        line = model.lines[j]
+        if b in (line.a, line.b):
+            length, rate, nx, ny = _line(model, line, q, u)
+            pull = line.stiffness * (length - line.length) + line.viscous * rate
+            sign = (1.0 if line.a == b else 0.0) - (1.0 if line.b == b else 0.0)
+            fx, fy = fx + sign * pull * nx, fy + sign * pull * ny
+    return fx, fy
+
+
+@kernel
 def line_spring_energy(model, q):
     """Energy in all of them, J."""
     energy = 0.0
@@ -95,6 +109,13 @@ def line_spring_energy(model, q):
         length, _, _, _ = _line(model, line, q, q)
         energy += 0.5 * line.stiffness * (length - line.length) ** 2
     return energy
+
+
+@entry
+def line_spring_pulls(model, b, q, u, out_pull):
+    """For rows of coordinates: their force on body b, N (rows, 2)."""
+    for row in range(len(q)):
+        out_pull[row, 0], out_pull[row, 1] = line_spring_pull(model, b, q[row], u[row])
 
 
 @entry
@@ -154,7 +175,7 @@ def set_grips(model, u, label, island, options, out_grip):
         coordinate = model.coordinates[i]
         if label[i] != island:
             continue
-        if coordinate.coulomb == 0.0:
+        if coordinate.coulomb == 0.0 and not coordinate.loaded:
             out_grip[i] = OPEN
         elif abs(u[i]) * options.size <= options.speed_zero * coordinate.scale:
             out_grip[i] = STICK
@@ -163,20 +184,20 @@ def set_grips(model, u, label, island, options, out_grip):
 
 
 @kernel
-def add_drag(model, grip, out_h):
+def add_drag(dry, grip, out_h):
     """Dry friction of the moving bearings."""
-    for i in range(len(model.coordinates)):
+    for i in range(len(out_h)):
         if grip[i] == FORWARD or grip[i] == BACKWARD:
-            out_h[i] -= grip[i] * model.coordinates[i].coulomb
+            out_h[i] -= grip[i] * dry[i]
 
 
 @kernel
-def drag_power(model, grip, u):
+def drag_power(dry, grip, u):
     """Power the moving bearings take, W. A smooth function of u also beyond a reversal, where the step will end."""
     power = 0.0
-    for i in range(len(model.coordinates)):
+    for i in range(len(u)):
         if grip[i] == FORWARD or grip[i] == BACKWARD:
-            power += grip[i] * model.coordinates[i].coulomb * u[i]
+            power += grip[i] * dry[i] * u[i]
     return power
 
 

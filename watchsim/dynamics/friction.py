@@ -91,6 +91,7 @@ class LastProblem:
     bearings: int
     level: int  # a Level
     lemke: int  # an LcpOutcome
+    jammed: int  # 1: of the bearings no friction goes with the load that it makes
 
 
 class FrictionProblem(NamedTuple):
@@ -114,7 +115,7 @@ class FrictionProblem(NamedTuple):
     shift: Array  # (blocks,) constant part of its lower end
     friction_sign: Array  # (rows of G,) -1 where the problem has a direction of friction the other way round, else 1
     unit: Array  # (blocks,) scale that gives G a unit diagonal
-    loaded: Array  # (rows of G,) m/s²: of the gaps without contact forces, bearings at the lower end of their friction
+    loaded: Array  # (rows of G,) m/s² or m/s: of the gaps without contact forces, bearings at the lower end of their friction
     A: Array  # the problem y = A x + rhs, in units that give G a unit diagonal
     rhs: Array
     x: Array
@@ -230,6 +231,16 @@ def fill_rhs(b, m, elements, problem):
         unit, row = problem.unit[problem.block[e]], element_row(problem, m, e)
         problem.rhs[m + e] = unit * (problem.friction_sign[row] * b[row])
         problem.rhs[m + elements + e] = problem.span[e] / unit
+
+
+@kernel
+def load_bearings(G, b, m, elements, bearings, problem):
+    """The rows `b` with the bearings, whose elements come last, at the lower end of their friction, into `problem.loaded`."""
+    for row in range(2 * m + bearings):
+        problem.loaded[row] = b[row]
+        for p in range(bearings):
+            force = problem.friction_sign[2 * m + p] * problem.shift[elements - bearings + p]
+            problem.loaded[row] += G[row, 2 * m + p] * force
 
 
 @kernel

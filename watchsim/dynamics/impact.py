@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.dynamics.acceleration import gap_accelerations
-from watchsim.dynamics.delassus import apply, contact_velocities, fill_delassus, inverse_mass
+from watchsim.dynamics.bearings import LOAD_ROUNDS, has_settled, lay_on, load_on, press_contacts, settled_share
+from watchsim.dynamics.delassus import apply, contact_velocities, fill_bearings, fill_delassus, inverse_mass
 from watchsim.dynamics.friction import (
     add_element,
     choose_signs,
@@ -24,6 +25,7 @@ from watchsim.dynamics.friction import (
     friction_bound,
     keep_basis,
     law_of,
+    load_bearings,
     read_forces,
     solve_contacts,
 )
@@ -38,7 +40,9 @@ Array = NDArray[np.float64]
 class ImpactPhases(NamedTuple):
     """The two phases of an impact; rows N, T of each contact, m/s and N·s."""
 
-    rates: Array  # before the compression
+    bearing: Array  # by coordinate: impulse of friction in a bearing with a load, N·m·s, of both phases
+    limit: Array  # the same, of bearings that the contacts strike: its largest magnitude in the phase
+    rates: Array  # before the compression; rows of bearings behind those of the contacts
     impulse: Array  # of the compression, then of both phases
     more: Array  # of the expansion
     between: Array  # rates at the start of the expansion, its least impulses included
@@ -48,10 +52,10 @@ class ImpactPhases(NamedTuple):
 ImpactPhasesRef = by_reference(ImpactPhases, __name__)
 
 
-def impact_phases(room: int) -> ImpactPhases:
-    """For `room` closed contacts."""
-    rates, impulse, more, between = np.zeros((4, 2 * room))
-    return ImpactPhases(rates, impulse, more, between, np.zeros(room))
+def impact_phases(room: int, coordinates: int) -> ImpactPhases:
+    """For `room` closed contacts and as many bearings as coordinates."""
+    rates, impulse, more, between = np.zeros((4, 2 * room + coordinates))
+    return ImpactPhases(np.zeros(coordinates), np.zeros(coordinates), rates, impulse, more, between, np.zeros(room))
 
 
 @kernel
@@ -93,19 +97,90 @@ def impact(model, closed, m, restitution, jam_speed, system, problem, phases, ou
     fill_delassus(closed, m, system.inverse, system.G)
     contact_velocities(closed, m, out_u, phases.rates)
     _drop_rounding(closed, m, out_u, phases.rates)
+    bearings = _struck_bearings(model, closed, m, out_u, system, problem, phases)
     elements = _elements(model, closed, m, phases.rates, problem)
-    if not _compress(m, elements, jam_speed, system.G, problem, phases):
-        return False
+    for number in range(LOAD_ROUNDS):
+        _bear(m, elements, bearings, problem, phases)
+        if not _compress(m, (elements, bearings), jam_speed, system.G, problem, phases):
+            return False
+        if _bearings_settle(model, closed, m, bearings, phases.impulse, number, system, problem, phases):
+            break
     returns = False
     for i in range(m):
         returns = returns or (restitution[i] > 0.0 and phases.impulse[2 * i] > 0.0)
-    if returns:
-        if not _expand(model, closed, m, restitution, elements, system.G, problem, phases):
-            return False
-        for row in range(2 * m):
+    if returns and not problem.last.jammed:
+        for number in range(LOAD_ROUNDS):
+            if not _expand(model, closed, m, restitution, (elements, bearings), system.G, problem, phases):
+                return False
+            if _bearings_settle(model, closed, m, bearings, phases.more, number, system, problem, phases):
+                break
+        for row in range(2 * m + bearings):
             phases.impulse[row] += phases.more[row]
+    if problem.last.jammed:
+        return False
     apply(closed, m, phases.impulse, system.inverse, out_u)
+    for p in range(bearings):
+        i = problem.bearing[p]
+        phases.bearing[i] = phases.impulse[2 * m + p]
+        out_u[i] += system.inverse[i] * phases.bearing[i]
     return True
+
+
+# Bearings with a load: an impulse on a body is one on its pivot, and makes an impulse of friction there, within grip |R| of
+# each phase. As with forces (bearings.py) the load goes with the friction, and both are found in turn.
+
+
+@kernel
+def _struck_bearings(model, closed, m, u, system, problem, phases):
+    """List the bearings with a load on whose bodies the m contacts act, with their rows of G and of the rates; how many?"""
+    bearings, problem.last.jammed = 0, 0
+    for p in range(len(model.bearings)):
+        j, struck = model.bearings[p].coordinate, False
+        phases.bearing[j], phases.limit[j] = 0.0, 0.0
+        for i in range(m):
+            for k in range(closed.slots[i]):
+                struck = struck or closed.coord[i, k] == j
+        if struck:
+            problem.bearing[bearings], phases.rates[2 * m + bearings] = j, u[j]
+            bearings += 1
+    fill_bearings(closed, m, problem.bearing, bearings, system.inverse, system.G)
+    return bearings
+
+
+@kernel
+def _bear(m, elements, bearings, problem, phases):
+    """Make elements, behind those of the contacts, of the bearings within their limits."""
+    for p in range(bearings):
+        limit = phases.limit[problem.bearing[p]]
+        add_element(problem, m + p, elements + p, (0.0, 2.0 * limit, -limit))
+
+
+@kernel
+def _bearings_settle(model, closed, m, bearings, impulse, number, system, problem, phases):
+    """Set the limits to what the impulses of a phase press on the pivots; True if they were that before.
+
+    After the last round without that `problem.last.jammed` is 1.
+    """
+    if bearings == 0:
+        return True
+    lay_on(model, 0.0, system)
+    press_contacts(model, closed, m, impulse, system)
+    worst = 0.0
+    for p in range(len(model.bearings)):
+        for k in range(bearings):
+            j = model.bearings[p].coordinate
+            if problem.bearing[k] == j:
+                jump = impulse[2 * m + k]
+                for i in range(m):
+                    for slot in range(closed.slots[i]):
+                        if closed.coord[i, slot] == j:
+                            jump += closed.w_N[i, slot] * impulse[2 * i] + closed.w_T[i, slot] * impulse[2 * i + 1]
+                limit = model.bearings[p].grip * load_on(system, p, jump * system.inverse[j])
+                worst = max(worst, settled_share(limit - phases.limit[j], max(limit, phases.limit[j])))
+                phases.limit[j] = limit
+    settled = has_settled(worst, number)
+    problem.last.jammed = 1 if number == LOAD_ROUNDS - 1 and not settled else 0
+    return settled
 
 
 @kernel
@@ -137,19 +212,21 @@ def _elements(model, closed, m, rates, problem):
 
 
 @kernel
-def _compress(m, elements, jam_speed, G, problem, phases):
-    """Impulses of the compression into `phases.impulse`; True if they are found."""
-    choose_signs(G, phases.rates, m, 2 * m, elements, problem)
+def _compress(m, sizes, jam_speed, G, problem, phases):
+    """Impulses of the compression into `phases.impulse`; True if they are found. `sizes`: elements of contacts, bearings."""
+    bearings, elements = sizes[1], sizes[0] + sizes[1]
+    choose_signs(G, phases.rates, m, 2 * m + bearings, elements, problem)
     if jam_speed > 0.0:
         raise_friction(G, m, problem)
     fill_matrix(G, m, elements, problem)
-    fill_rhs(phases.rates, m, elements, problem)
+    load_bearings(G, phases.rates, m, elements, bearings, problem)
+    fill_rhs(problem.loaded, m, elements, problem)
     # Where something approaches, a gap that stands still needs no perturbation, even one at exactly zero.
     perturbed = jam_speed > 0.0 and perturb_approach(phases.rates, m, jam_speed, problem)
     perturbed = _keep_sliding(G, phases.rates, m, problem) or perturbed
-    solver = solve_contacts(m, elements, 0, Level.COMPRESSION, problem)
+    solver = solve_contacts(m, elements, bearings, Level.COMPRESSION, problem)
     if perturbed and solver != Solver.FAILED:
-        keep_basis(phases.rates, m, elements, solver, problem)
+        keep_basis(problem.loaded, m, elements, solver, problem)
     read_forces(m, elements, problem, phases.impulse)
     return solver != Solver.FAILED
 
@@ -206,12 +283,16 @@ def is_parallel(G, i):
 
 
 @kernel
-def _expand(model, closed, m, restitution, elements, G, problem, phases):
-    """Impulses of the expansion into `phases.more`; True if they are found.
+def _expand(model, closed, m, restitution, sizes, G, problem, phases):
+    """Impulses of the expansion into `phases.more`; True if they are found. `sizes`: elements of contacts, bearings.
 
     Unknowns: Lambda_NP = Lambda_NE - eps_N Lambda_NC and the distance of Lambda_TE from the lower end of its interval.
     """
-    sign = problem.friction_sign
+    sign, bearings, elements = problem.friction_sign, sizes[1], sizes[0] + sizes[1]
+    rows = 2 * m + bearings
+    _bear(m, sizes[0], bearings, problem, phases)
+    for p in range(bearings):
+        phases.more[2 * m + p] = sign[2 * m + p] * problem.shift[sizes[0] + p]
     for i in range(m):
         N, T, e = 2 * i, 2 * i + 1, problem.element[i]
         normal, tangential = phases.impulse[N], sign[T] * phases.impulse[T]
@@ -222,18 +303,21 @@ def _expand(model, closed, m, restitution, elements, G, problem, phases):
             low, width, span, shift, returned = interval(law, mu, restitution[i], normal, tangential)
             problem.drag[i], phases.more[T], phases.offset[i] = low, sign[T] * shift, sign[T] * (law.nu * returned)
             add_element(problem, i, e, (width, span, shift))
-    for row in range(2 * m):
+    for row in range(rows):
         total = phases.rates[row]
-        for j in range(2 * m):
+        for j in range(rows):
             total += G[row, j] * (phases.impulse[j] + phases.more[j])
         phases.between[row] = total
-    for e in range(elements):
+    for e in range(sizes[0]):
         row = element_row(problem, m, e)
         for i in range(m):
             phases.between[row] -= G[row, 2 * i + 1] * phases.offset[i]
     fill_matrix(G, m, elements, problem)
     fill_rhs(phases.between, m, elements, problem)
-    solver = solve_contacts(m, elements, 0, Level.EXPANSION, problem)
+    solver = solve_contacts(m, elements, bearings, Level.EXPANSION, problem)
+    for e in range(sizes[0], elements):
+        row = element_row(problem, m, e)
+        phases.more[row] += sign[row] * (problem.unit[problem.block[e]] * problem.x[m + e])
     for i in range(m):
         N, T, e = 2 * i, 2 * i + 1, problem.element[i]
         extra = problem.unit[i] * problem.x[i]
@@ -264,15 +348,15 @@ def plastic_impact(model, closed, m, time, u, system, problem, phases):
 
 
 @kernel
-def energy_gain(m, G, rates, impulse):
-    """(kinetic energy that m contacts' impulses add to motion at these rates, sum of its terms without sign), J.
+def energy_gain(rows, G, rates, impulse):
+    """(kinetic energy that impulses by row of G add to motion at these rates, sum of its terms without sign), J.
 
     Lambda·(rates before + half of G Lambda).
     """
     gain, terms = 0.0, 0.0
-    for row in range(2 * m):
+    for row in range(rows):
         jump = 0.0
-        for j in range(2 * m):
+        for j in range(rows):
             jump += G[row, j] * impulse[j]
         gain += impulse[row] * (rates[row] + 0.5 * jump)
         terms += abs(impulse[row]) * (abs(rates[row]) + 0.5 * abs(jump))

@@ -237,8 +237,8 @@ def _fill_laws(model, closed, m, n, lenience, system, modes):
                 laws = _begin_law(redundant, n, laws, 0.0, _law_slack(system, i, lenience))
                 redundant.laws[laws - 1, i], redundant.laws[laws - 1, t] = modes.friction[i], side
     for j in range(len(model.coordinates)):
-        if system.inverse[j] == 0.0 and model.coordinates[j].coulomb > 0.0 and not model.coordinates[j].driven:
-            laws = _hold_bearing(model.coordinates[j].coulomb, closed, m, n, j, laws, lenience, system.h[j], modes)
+        if system.inverse[j] == 0.0 and system.dry[j] > 0.0 and not model.coordinates[j].driven:
+            laws = _hold_bearing(system.dry[j], closed, m, n, j, laws, lenience, system.h[j], modes)
     return laws
 
 

@@ -17,6 +17,7 @@ from watchsim.contact.cells import choose_cells
 from watchsim.mechanism.backlash import with_racks
 from watchsim.mechanism.contacts import coordinates_of_lines, declared_contacts, features, line_springs, near_contacts
 from watchsim.model import (
+    BEARING,
     BODY,
     CONSTANT,
     COORDINATE,
@@ -49,9 +50,9 @@ OVER = {"constant": CONSTANT, "angle": OVER_ANGLE, "time": OVER_TIME}
 
 @dataclass(frozen=True)
 class Forced:
-    """Coordinates, joints, line springs, force tables and their knots, in the model's order; natural frequencies, 1/s."""
+    """Coordinates, joints, line springs, bearings, tables and their knots, in the model's order; natural frequencies, 1/s."""
 
-    parts: tuple[Records, Records, Records, Records, np.ndarray]
+    parts: tuple[Records, Records, Records, Records, Records, np.ndarray]
     fastest: float
     slowest: float  # that counts, of what moves at all: never 0
 
@@ -149,10 +150,7 @@ def forced_coordinates(
         for law, power in DAMPING_LAWS.items():
             row[law] += ratio ** (power + 1) * getattr(damping, law)
         row.coulomb += ratio * damping.coulomb
-    masses_of = {body.name: load.mass for body, load in zip(scene.bodies, weighed, strict=True)}
-    for bearing in scene.bearings:
-        torque = bearing.torque(masses_of[bearing.body], scene.gravity)
-        targets.row(bearing.body).coulomb += abs(targets.ratio(bearing.body)) * torque
+    bearings = _bearings(scene, weighed, targets)
     tables, knots = _tables(scene, targets)
     joints = targets.joints
     if joints.coulomb.any():
@@ -167,6 +165,7 @@ def forced_coordinates(
     for i, row in enumerate(rows):
         bent = any(row[law] != 0.0 for law, power in DAMPING_LAWS.items() if power != 1)
         bent = bent or row.cubic != 0.0
+        bent = bent or any(one.coordinate == i and (one.moment_x or one.moment_y) for one in bearings)
         row.linear = not bent and row.weight_x == 0.0 and row.weight_y == 0.0 and i not in tabled | jointed
     inverse = np.where(rows.driven != 0, 0.0, 1.0 / rows.mass)
     light = 1.0 / (inverse[joints.coordinate] + inverse[joints.on])
@@ -182,7 +181,23 @@ def forced_coordinates(
     rows.rate = fastest or pushed or thrown or 1.0
     # Without a spring nothing comes back by itself: what forces do takes longer than their rate says.
     slowest = float(np.min(swings[swings > 0.0])) if fastest else pushed / UNSPRUNG or thrown or 1.0
-    return Forced((rows, joints, lines, tables, knots), fastest, max(slowest, SLOWEST_RATE * fastest))
+    return Forced((rows, joints, lines, bearings, tables, knots), fastest, max(slowest, SLOWEST_RATE * fastest))
+
+
+def _bearings(scene: Scene, weighed: tuple[Weighed, ...], targets: _Targets) -> Records:
+    """The pivots whose friction goes with their load, one row a body; what the weight alone makes goes into the coordinates."""
+    numbers = {body.name: i for i, body in enumerate(scene.bodies)}
+    bearings = records(BEARING, len({bearing.body for bearing in scene.bearings}))
+    of = dict(zip(dict.fromkeys(bearing.body for bearing in scene.bearings), bearings, strict=True))
+    for bearing in scene.bearings:
+        row, load = of[bearing.body], weighed[numbers[bearing.body]]
+        row.body, row.coordinate = numbers[bearing.body], targets.number(bearing.body)
+        row.grip += bearing.friction * bearing.radius
+        row.moment_x, row.moment_y = load.moment
+        row.weight_x, row.weight_y = load.mass * scene.gravity[0], load.mass * scene.gravity[1]
+        targets.row(bearing.body).coulomb += bearing.torque(load.mass, scene.gravity)
+        targets.row(bearing.body).loaded = 1
+    return bearings
 
 
 def _watch(scene: Scene, targets: _Targets) -> float:

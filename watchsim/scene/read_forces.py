@@ -267,14 +267,27 @@ def read_damping(
 
 def read_bearings(mapping: Mapping[str, Any], bodies: tuple[Body, ...], faults: Faults) -> tuple[Bearing, ...]:
     """Pivots whose friction goes with the weight that they carry."""
-    return tuple(_bearing(entry) for entry in _entries(mapping, "bearings", BEARING, bodies, faults))
+    crowded = _crowded(bodies)
+    return tuple(_bearing(entry, crowded) for entry in _entries(mapping, "bearings", BEARING, bodies, faults))
 
 
-def _bearing(entry: Entry) -> Bearing:
+def _crowded(bodies: tuple[Body, ...]) -> dict[str, str]:
+    """Bodies whose pivots carry what is not known: other bodies, or the force between teeth of gears without play."""
+    found = {body.on: f"carries {body.name}, whose forces its pivot would feel" for body in bodies if body.on}
+    for body in bodies:
+        if body.geared is not None:
+            meshed = "is geared without play, and nothing computes the force between the teeth as it runs"
+            found |= {body.name: meshed, body.geared.to: meshed}
+    return found
+
+
+def _bearing(entry: Entry, crowded: Mapping[str, str]) -> Bearing:
     table, body = entry.table, entry.body
     table.lacks('body = "balance", radius = "0.05 mm", friction = 0.12')
     if body is not None and (body.motion != "pivot" or body.on is not None or body.prescribed is not None):
         table.fault("body", "a bearing with a load is that of a body that turns about a pivot of the movement", with_value=True)
+    elif body is not None and (reason := crowded.get(body.name)):
+        table.fault("body", f"{body.name} {reason}: write coulomb under [[damping]]", with_value=True)
     elif body is not None and body.mass == 0.0:
         why = f"{body.name} has no weight: give it a mass or solids, or write coulomb under [[damping]]"
         table.fault("body", why, with_value=True)

@@ -10,7 +10,8 @@ from __future__ import annotations
 import math
 
 from watchsim.contact.gaps import OPEN, STICK, contact_kinematics, place_body
-from watchsim.dynamics.acceleration import solve_mode
+from watchsim.dynamics.acceleration import accelerate, solve_mode
+from watchsim.dynamics.bearings import LOAD_ROUNDS, begin_loads, has_settled, lay_on, press_contacts, rub
 from watchsim.dynamics.delassus import apply, drive_through_contacts, fill_delassus, own_acceleration
 from watchsim.dynamics.forces import add_drag, add_loads, damping_power, drag_power, drive_power, forces
 from watchsim.dynamics.friction import jams
@@ -403,7 +404,7 @@ def bearing_monitor(model, grip, lenience, options, j, smooth):
     if grip == OPEN:
         return 1.0
     if grip == STICK:
-        return coordinate.coulomb - abs(smooth.load[j]) + lenience * options.force_zero * smooth.terms[j]
+        return smooth.system.dry[j] - abs(smooth.load[j]) + lenience * options.force_zero * smooth.terms[j]
     slack = 0.5 * lenience * options.speed_zero / options.size * coordinate.scale
     return grip * smooth.y[len(model.coordinates) + j] + slack
 
@@ -470,6 +471,28 @@ def engage(model, active, instant, smooth):
 
 
 @kernel
+def settle_loads(model, regime, held, pose, closed, system, modes):
+    """Friction of the loaded bearings with the contacts in force into `system.dry` and `system.h`; False if there is none.
+
+    `held`: (contacts in `regime.active`, lenience). `system` holds h and the inverse masses, and what `begin_loads` finds.
+    """
+    contacts, lenience = held
+    for number in range(LOAD_ROUNDS):
+        accelerate(model, closed, 0, system, system.a)
+        lay_on(model, 1.0, system)
+        first = 0
+        while first < contacts:
+            m = place_contacts(model, regime.active, first, regime.upto[first], pose, closed)
+            solve_mode(model, closed, m, regime.mode, lenience, system, modes)
+            apply(closed, m, system.force, system.inverse, system.a)
+            press_contacts(model, closed, m, system.force, system)
+            first += m
+        if has_settled(rub(model, regime.grip, system), number):
+            return True
+    return False
+
+
+@kernel
 def motion(model, regime, options, t, smooth, out_counts):
     """dy/dt of `smooth.y` = (q, u, sums) at time t (s) into `smooth.dy`; returns the smallest monitor.
 
@@ -481,10 +504,13 @@ def motion(model, regime, options, t, smooth, out_counts):
     q, u = smooth.y[:n], smooth.y[n : 2 * n]
     closed, out = smooth.closed, smooth.dy
     forces(model, t, q, u, system.h)
-    add_drag(model, regime.grip, system.h)
+    begin_loads(model, q, u, system)
+    add_drag(system.dry, regime.grip, system.h)
     for b in range(len(model.bodies)):
         if smooth.engaged[b]:
             place_body(model, b, q, u, smooth.pose)
+    if len(model.bearings) > 0 and not settle_loads(model, regime, (contacts, lenience), smooth.pose, closed, system, modes):
+        smooth.held.jammed = 1
     for i in range(n):
         out[i], out[n + i] = u[i], own_acceleration(model, system, i)
         smooth.load[i], smooth.terms[i] = system.h[i], abs(system.h[i])
@@ -507,7 +533,7 @@ def motion(model, regime, options, t, smooth, out_counts):
         if regime.awake[i] == 0:
             out[n + i] = 0.0
     out[2 * n] = drive_power(model, t, q, u) + driven
-    out[2 * n + 1] = damping_power(model, q, u) + drag_power(model, regime.grip, u)
+    out[2 * n + 1] = damping_power(model, q, u) + drag_power(system.dry, regime.grip, u)
     out[2 * n + 2] = friction
     out_counts.evaluations += 1
     return smallest

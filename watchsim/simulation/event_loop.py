@@ -11,6 +11,7 @@ import math
 from watchsim.contact.cell_lookup import time_through_cells
 from watchsim.contact.gaps import OPEN, STICK, extent_margin, place
 from watchsim.dynamics.acceleration import accelerate
+from watchsim.dynamics.bearings import begin_loads
 from watchsim.dynamics.delassus import apply, copy, fill_inverse
 from watchsim.dynamics.forces import add_drag, forces, next_knot
 from watchsim.jit import entry, kernel
@@ -35,6 +36,7 @@ from watchsim.simulation.coupled_motion import (
     place_contacts,
     project_positions,
     project_velocities,
+    settle_loads,
     sort_by_island,
 )
 from watchsim.simulation.first_closing import first_touch
@@ -191,10 +193,12 @@ def resolve(model, state, island, m, options, scratch, record):
         if jammed or approaching(m, event.closed, event.zero):
             jam_speed = options.speed_zero if jammed else 0.0
             if not collide(model, state, island, m, options, jam_speed, scratch, record):
-                return Stop.LCP_FAILED, 0
+                return Stop.BEARING_JAMS if work.problem.last.jammed else Stop.LCP_FAILED, 0
             jammed, hit = False, not jammed
         else:
             decision = decide(model, state, island, m, options, work.system, work.problem, event, state.regime.grip)
+            if work.problem.last.jammed:
+                return Stop.BEARING_JAMS, 0
             verdict = judge(model, state, island, m, decision, (exactly, hit), options, scratch, record)
             if verdict == Verdict.HOLDS:
                 return Stop.RUNNING, decision[0]
@@ -238,8 +242,11 @@ def finish_event(model, state, f, options, scratch, record):
     sort_by_island(model, event.label, f, state.regime.active, state.regime.upto)
     place(model, state.q, state.u, event.pose)
     forces(model, state.clock.time, state.q, state.u, system.h)
-    add_drag(model, state.regime.grip, system.h)
     fill_inverse(model, state.regime.grip, system.inverse)
+    begin_loads(model, state.q, state.u, system)
+    add_drag(system.dry, state.regime.grip, system.h)
+    if len(model.bearings) > 0:
+        settle_loads(model, state.regime, (f, state.instant.lenience), event.pose, rest, system, work.modes)
     accelerate(model, rest, 0, system, state.a)
     begin_terms(system.h, event.terms)
     event.loose[:] = 0
@@ -326,7 +333,7 @@ def _smooth_step(model, cells, state, options, end_time, scratch, record):
         longest = min(left, longest_step(options, state.clock.time), next_knot(model, state.clock.time) - state.clock.time)
         made, smallest = coupled_step(model, state, options, longest, scratch.smooth)
         if not made:
-            return Stop.STEP_TOO_SMALL, False
+            return Stop.BEARING_JAMS if scratch.smooth.held.jammed else Stop.STEP_TOO_SMALL, False
         leave, code = first_leave(model, state.regime, options, smallest, scratch.smooth, state.counts)
     step = scratch.step
     length = step.span.length
@@ -393,14 +400,14 @@ def handle_waiting_event(model, cells, state, options, scratch, record):
     elif state.instant.events > EVENTS_AT_ONCE:
         return Stop.TOO_MANY_EVENTS
     touched, blows = state.instant.touched, state.counts.impacts + state.counts.jams
-    lost = state.sums.impacts - state.sums.drive
+    lost, rubbed = state.sums.impacts - state.sums.drive, state.sums.damping
     before = kinetic_energy(model, state.u)
     code = handle_event(model, cells, state, options, scratch, record)
     if code != Stop.RUNNING:
         return code
     state.worst.kinetic_energy = max(state.worst.kinetic_energy, before)
     moving = kinetic_energy(model, state.u)
-    after = moving + (state.sums.impacts - state.sums.drive - lost)
+    after = moving + (state.sums.impacts - state.sums.drive - lost) + (state.sums.damping - rubbed)
     # Where a driven body strikes what is at rest, all energy comes in at this instant, with its rounding.
     if not is_explained(model, options, before, after, max(state.worst.kinetic_energy, moving)):
         return Stop.UNEXPLAINED

@@ -11,6 +11,7 @@ import math
 
 from watchsim.contact.gaps import BACKWARD, FORWARD, STICK, contact_kinematics, gap_acceleration
 from watchsim.dynamics.acceleration import accelerate, decide_modes, solve_mode
+from watchsim.dynamics.bearings import begin_loads
 from watchsim.dynamics.delassus import apply, contact_velocities, copy, drive_through_contacts
 from watchsim.dynamics.friction import law_of
 from watchsim.dynamics.impact import energy_gain, impact, plastic_impact
@@ -50,6 +51,7 @@ def collide(model, state, island, m, options, jam_speed, scratch, record):
     """
     work, event, room = scratch.work, scratch.event, scratch.impact
     copy(state.u, room.before)
+    begin_loads(model, state.q, state.u, work.system)
     for i in range(m):
         room.restitution[i] = law_of(model, event.closed.ids[i]).restitution
     ended, ends = False, state.clock.time
@@ -67,6 +69,8 @@ def collide(model, state, island, m, options, jam_speed, scratch, record):
         if not found:
             break
         ended, ends = True, max(ends, end)
+    for i in range(len(state.u)):
+        state.sums.damping -= 0.5 * work.phases.bearing[i] * (room.before[i] + state.u[i])
     _write(model, state, m, jam_speed, event.closed, room, record, ended, ends)
     if jam_speed == 0.0 and may_be_chatter(m, options, event, room):
         _end_chatter(model, state, island, m, options, scratch, record)
@@ -87,7 +91,7 @@ def _solve(model, m, jam_speed, work, closed, room, out_u, out_counts):
         if not solved:
             out_counts.lcp_failures += 1
             return False
-        gain, terms = energy_gain(m, system.G, phases.rates, phases.impulse)
+        gain, terms = energy_gain(2 * m + work.problem.last.bearings, system.G, phases.rates, phases.impulse)
         if gain <= ENERGY_GAIN * kinetic:
             return True
         if attempt == 2:
@@ -345,7 +349,7 @@ def end_chatter(model, u, m, time, taken, lenience, work, event, room):
     # Less pressure for a moment is less friction, which will come: of what the impact took, no more than that is given back.
     kinetic = kinetic_energy(model, u)
     contact_velocities(rest, r, u, phases.rates)
-    gain, _ = energy_gain(r, system.G, phases.rates, ending)
+    gain, _ = energy_gain(2 * r, system.G, phases.rates, ending)
     return not gain > max(CHATTER_GAIN * kinetic, min(taken, CHATTER_BACK * kinetic)), r
 
 

@@ -392,10 +392,13 @@ def coupled_step(model, state, options, longest, smooth):
     engage(model, regime.active, state.instant, smooth)
     h = min(state.clock.step, longest)
     shrunk = False
+    smooth.held.jammed = 0
     at_start = _stage(model, regime, options, 0, h, smooth, state.counts)  # whatever the length of the step
     copy(smooth.monitors, smooth.before)
+    if smooth.held.jammed:
+        return False, at_start
     while True:
-        smallest = at_start
+        smallest, smooth.held.jammed = at_start, 0
         for s in range(1, STAGES + 1):
             smallest = min(smallest, _stage(model, regime, options, s, h, smooth, state.counts))
         for i in range(len(step.y0)):
@@ -407,6 +410,7 @@ def coupled_step(model, state, options, longest, smooth):
             smallest = min(smallest, _extend(model, regime, options, h, smooth, state.counts))
             defect = _defect(model, tolerance, h, step)
             error = defect if defect > 1.0 else error
+            error = math.inf if smooth.held.jammed else error
         factor = min(GROW, max(SHRINK, SAFETY * error**-0.125)) if error > 0.0 else GROW
         if error <= 1.0:
             break

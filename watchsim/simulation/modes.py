@@ -11,6 +11,7 @@ from enum import IntEnum
 
 from watchsim.contact.gaps import BACKWARD, FORWARD, OPEN, STICK, gap_acceleration, place
 from watchsim.dynamics.acceleration import accelerate, decide_modes, solve_mode
+from watchsim.dynamics.bearings import LOAD_ROUNDS, begin_loads, has_settled, lay_on, press_contacts, rub
 from watchsim.dynamics.delassus import fill_inverse, inverse_mass
 from watchsim.dynamics.forces import add_drag, forces, set_grips, stop_held
 from watchsim.dynamics.friction import LARGEST, law_of
@@ -27,6 +28,7 @@ from watchsim.tolerances import (
     DEPENDENT_AT_EVENTS,
     FORCE_NOISE,
     LENIENCE_STEP,
+    LOAD_ROUGH,
     MOST_LENIENT,
     RATE_FLOOR,
     RATE_ROUNDING,
@@ -62,19 +64,41 @@ def decide(model, state, island, m, options, system, problem, event, out_grip):
     """Modes of those of the island's m closed contacts that are in I_N, into `event.decided`, and the grips of its bearings.
 
     Their forces are left in `system`. Returns (number of contacts in I_N, now in `event.rest`; solved?). Of `state` only
-    counts are written.
+    counts are written. `problem.last.jammed`: no friction of the bearings goes with the load that it makes.
     """
     r = resting(model, m, event.closed, event.pose, event.zero, event.rest)
-    forces(model, state.clock.time, state.q, state.u, system.h)
-    set_grips(model, state.u, event.label, island, options, out_grip)
-    add_drag(model, out_grip, system.h)
-    bearings = standing_bearings(event.label, island, out_grip, problem.bearing)
-    if r == 0 and bearings == 0:
-        fill_inverse(model, out_grip, system.inverse)
-        return 0, True
-    solved = decide_modes(model, event.rest, r, bearings, options.speed_zero, system, problem, out_grip, event.decided)
-    count_problems(problem, state.counts)
-    return r, solved
+    problem.last.jammed = 0
+    begin_loads(model, state.q, state.u, system)
+    for number in range(LOAD_ROUNDS):
+        forces(model, state.clock.time, state.q, state.u, system.h)
+        set_grips(model, state.u, event.label, island, options, out_grip)
+        add_drag(system.dry, out_grip, system.h)
+        bearings, solved = standing_bearings(event.label, island, out_grip, problem.bearing), True
+        if r == 0 and bearings == 0:
+            fill_inverse(model, out_grip, system.inverse)
+        else:
+            solved = decide_modes(model, event.rest, r, bearings, options.speed_zero, system, problem, out_grip, event.decided)
+            count_problems(problem, state.counts)
+        if len(model.bearings) == 0 or not solved:
+            return r, solved
+        accelerate(model, event.rest, r, system, system.a)
+        lay_on(model, 1.0, system)
+        press_contacts(model, event.rest, r, system.force, system)
+        changed = rub(model, out_grip, system)
+        if _hold(r, bearings, out_grip, system, problem) and has_settled(changed, number):
+            return r, True
+    problem.last.jammed = 1
+    return r, False
+
+
+@kernel
+def _hold(r, bearings, grip, system, problem):
+    """True if the bearings that were found to hold do so with the friction of the load that follows."""
+    for p in range(bearings):
+        i = problem.bearing[p]
+        if grip[i] == STICK and abs(system.force[2 * r + p]) > (1.0 + LOAD_ROUGH) * system.dry[i]:
+            return False
+    return True
 
 
 @kernel

@@ -41,6 +41,7 @@ from watchsim.jit import by_reference, entry, inlined, kernel
 from watchsim.model import CellsRef, Model, ModelRef, blank
 from watchsim.simulation.closed_contacts import is_immovable
 from watchsim.simulation.moreau_percussions import (
+    LOAD_SWEEPS,
     Laws,
     LawsRef,
     cone,
@@ -52,6 +53,7 @@ from watchsim.simulation.moreau_percussions import (
     relax,
     solve_percussions,
     stop_approaches,
+    within_loads,
 )
 from watchsim.simulation.options import OptionsRef
 from watchsim.simulation.scratch import (
@@ -125,7 +127,8 @@ MoreauWorkRef = by_reference(MoreauWork, __name__)
 def moreau_work(model: Model) -> MoreauWork:
     """Room for one model."""
     n, room = len(model.coordinates), room_for(model)
-    dry = np.flatnonzero(model.coordinates.coulomb > 0.0)
+    loaded = list(model.bearings.coordinate)  # these first: they take part in impacts, too
+    dry = np.array([*loaded, *(k for k in np.flatnonzero(model.coordinates.coulomb > 0.0) if k not in loaded)], np.int64)
     rows = 2 * room + len(dry)
     vectors = {
         name: np.zeros(n)
@@ -265,12 +268,16 @@ def act(model, state, options, m, h, work, out_u):
     """Velocities at the end of the step: forces, contacts and dry bearings together, without restitution."""
     laws = work.laws
     _free_velocity(model, state, h, work)
-    copy(work.free, out_u)
     if m == 0 and len(work.dry) == 0:
+        copy(work.free, out_u)
         return
     bearings = _begin_percussions(model, m, options, h, work)
-    solve_percussions(state, m, bearings, work)
-    push(work, m, bearings, laws.P, out_u)
+    for _ in range(LOAD_SWEEPS):
+        solve_percussions(state, m, bearings, work)
+        copy(work.free, out_u)
+        push(work, m, bearings, laws.P, out_u)
+        if within_loads(model, m, h, laws.P, work.u, out_u, work):
+            break
     rates_of(work, m, bearings, work.u, laws.b)
     rates_of(work, m, bearings, out_u, work.rates)
     for i in range(m):

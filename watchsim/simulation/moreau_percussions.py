@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from watchsim.contact.gaps import point_of
 from watchsim.dynamics.delassus import (
     apply,
     contact_velocities,
@@ -19,6 +20,7 @@ from watchsim.dynamics.delassus import (
     drive_through_contacts,
     inverse_mass,
 )
+from watchsim.dynamics.forces import line_spring_pull
 from watchsim.dynamics.friction import friction_at, friction_bound, law_of, size_class
 from watchsim.dynamics.redundant import solve_small
 from watchsim.jit import by_reference, kernel
@@ -290,6 +292,58 @@ def friction_cones(model, m, u, options, work):
             work.laws.ends[i, 3] = friction_at(law, -slip)
 
 
+# Bearings with a load are the first ones. The impulse of the force on a pivot is what its body's momentum changes by, less what
+# contacts, weight and springs do; the friction there is within grip times that, and both are found in turn.
+
+LOAD_SWEEPS, LOAD_STEADY = 50, 1e-12
+
+
+@kernel
+def within_loads(model, m, h, P, before, after, work):
+    """Set how far the percussions of bearings with a load may go, from P; True if they went no further or less before.
+
+    `before`, `after`: the velocities that P leads from and to, in the time h (s), 0 at an impact.
+    """
+    steady = True
+    for k in range(len(model.bearings)):
+        bearing = model.bearings[k]
+        j, pose = bearing.coordinate, work.pose[bearing.body]
+        mx, my = point_of(pose, bearing.moment_x, bearing.moment_y)
+        fx, fy = line_spring_pull(model, bearing.body, work.q, work.foreseen)
+        jump, turned = after[j] - before[j], h * (0.5 * (before[j] + after[j])) ** 2
+        x = -jump * my - turned * mx - h * (bearing.weight_x + fx)
+        y = jump * mx - turned * my - h * (bearing.weight_y + fy)
+        for i in range(m):
+            contact, kin = model.contacts[work.closed.ids[i]], work.closed.kin[i]
+            for side, primitive in ((-1.0, contact.a), (1.0, contact.b)):
+                if model.primitives[primitive].body == bearing.body:
+                    x += side * (P[2 * i] * kin.nx - P[2 * i + 1] * kin.ny)
+                    y += side * (P[2 * i] * kin.ny + P[2 * i + 1] * kin.nx)
+        weight = (bearing.weight_x**2 + bearing.weight_y**2) ** 0.5
+        most = bearing.grip * (x * x + y * y) ** 0.5 + h * (model.coordinates[j].coulomb - bearing.grip * weight)
+        steady = steady and abs(most - work.laws.ends[m + k, 2]) <= LOAD_STEADY * most
+        work.laws.ends[m + k, 0], work.laws.ends[m + k, 2] = -most, most
+    return steady
+
+
+@kernel
+def _settle_impact(model, state, m, work):
+    """Percussions of a phase of an impact, with those of the bearings with a load, into `work.laws.P`."""
+    bearings = len(model.bearings)
+    if bearings == 0:
+        solve_percussions(state, m, 0, work)
+        return
+    for k in range(bearings):
+        work.laws.ends[m + k, 0], work.laws.ends[m + k, 2], work.laws.P[2 * m + k] = 0.0, 0.0, 0.0
+    work.foreseen[:] = 0.0
+    for _ in range(LOAD_SWEEPS):
+        solve_percussions(state, m, bearings, work)
+        work.change[:] = 0.0
+        push(work, m, bearings, work.laws.P, work.change)
+        if within_loads(model, m, 0.0, work.laws.P, work.foreseen, work.change, work):
+            return
+
+
 @kernel
 def _expansion_ends(law, mu, share, N, T, ends, i):
     """Where the tangential percussion of the expansion may lie after the compression (N, T); returns what is given back."""
@@ -318,11 +372,12 @@ def _compress(model, state, m, work):
     for i in range(m):
         laws.low[i] = 0.0
         cone(laws.ends, i, friction_bound(law_of(model, work.closed.ids[i]), work.rates[2 * i + 1]))
-    for row in range(2 * m):
+    rows = 2 * m + len(model.bearings)
+    for row in range(rows):
         laws.b[row], laws.P[row] = work.rates[row], 0.0
     _keep_sliding(m, work)
-    solve_percussions(state, m, 0, work)
-    for row in range(2 * m):
+    _settle_impact(model, state, m, work)
+    for row in range(rows):
         work.more[row] = laws.P[row]
 
 
@@ -345,10 +400,10 @@ def _keep_sliding(m, work):
 @kernel
 def _expand(model, state, m, work):
     """Percussions of the expansion with `work.restitution` into `work.laws.P`."""
-    laws = work.laws
-    for row in range(2 * m):
+    laws, rows = work.laws, 2 * m + len(model.bearings)
+    for row in range(rows):
         laws.b[row] = work.rates[row]
-        for column in range(2 * m):
+        for column in range(rows):
             laws.b[row] += laws.G[row, column] * work.more[column]
     for i in range(m):
         N, T, law = work.more[2 * i], work.more[2 * i + 1], law_of(model, work.closed.ids[i])
@@ -360,7 +415,7 @@ def _expand(model, state, m, work):
             # Friction of pg1996 changes sides at the slip that nu of what is returned would make.
             for j in range(m):
                 laws.b[2 * j + 1] -= laws.G[2 * j + 1, 2 * i + 1] * returned
-    solve_percussions(state, m, 0, work)
+    _settle_impact(model, state, m, work)
 
 
 @kernel
@@ -372,10 +427,10 @@ def _least_restitution(m, work):
 
 
 @kernel
-def _loss(m, work):
-    """Energy that the percussions take between the rates before, `work.rates`, and after, `work.laws.b`."""
+def _loss(first, rows, work):
+    """Energy that the percussions of rows take between the rates before, `work.rates`, and after, `work.laws.b`."""
     total = 0.0
-    for row in range(2 * m):
+    for row in range(first, rows):
         total -= 0.5 * work.laws.P[row] * (work.rates[row] + work.laws.b[row])
     return total
 
@@ -384,7 +439,8 @@ def _loss(m, work):
 def stop_approaches(model, state, options, m, work, record):
     """Impacts at the start of the step, into `work.u`; True if any is fast enough to be written down."""
     copy(state.u, work.u)
-    rates_of(work, m, 0, work.u, work.rates)
+    bearings = len(model.bearings)
+    rates_of(work, m, bearings, work.u, work.rates)
     fastest = 0.0
     for i in range(m):
         fastest = max(fastest, -work.rates[2 * i])
@@ -394,22 +450,23 @@ def stop_approaches(model, state, options, m, work, record):
     for i in range(len(work.u)):
         work.inverse[i] = inverse_mass(model.coordinates[i])
     kinetic = kinetic_energy(model, state.u)
-    fill_mobility(work, m, 0)
+    fill_mobility(work, m, bearings)
     _compress(model, state, m, work)
     for attempt in range(3):
         _expand(model, state, m, work)
-        for row in range(2 * m):
+        for row in range(2 * m + bearings):
             work.laws.P[row] += work.more[row]
         copy(state.u, work.u)
-        push(work, m, 0, work.laws.P, work.u)
-        rates_of(work, m, 0, work.u, work.laws.b)
-        if attempt == 2 or _loss(m, work) >= -ENERGY_GAIN * kinetic:
+        push(work, m, bearings, work.laws.P, work.u)
+        rates_of(work, m, bearings, work.u, work.laws.b)
+        if attempt == 2 or _loss(0, 2 * m + bearings, work) >= -ENERGY_GAIN * kinetic:
             break
         state.counts.energy_rescues += 1
         least = _least_restitution(m, work) if attempt == 0 else 0.0
         for i in range(m):
             work.restitution[i] = least
     state.sums.drive += drive_through_contacts(model, work.closed, m, work.laws.P, work.u)
+    state.sums.damping += _loss(2 * m, 2 * m + bearings, work)
     return _write_impacts(state, options, m, work, record)
 
 

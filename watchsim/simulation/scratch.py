@@ -167,7 +167,7 @@ def contact_work(room: int, coordinates: int) -> ContactWork:
         contact_system(room, coordinates),
         mode_system(room, coordinates, lcp),
         friction_problem(room, coordinates, lcp),
-        impact_phases(room),
+        impact_phases(room, coordinates),
     )
 
 
@@ -188,6 +188,7 @@ class Held:
 
     contacts: int  # in force, of awake bodies
     lenience: float  # that of the instant at which they were decided
+    jammed: int  # 1: see `LastProblem`
 
 
 class Smooth(NamedTuple):
@@ -438,6 +439,7 @@ def new_scratch(model: Model) -> Scratch:
     """Room to work for one model."""
     n, bodies, contacts, room = len(model.coordinates), len(model.bodies), len(model.contacts), room_for(model)
     step, work = _step_room(n), contact_work(room, n)
+    work.system.dry[:] = model.coordinates.coulomb
     return Scratch(
         step=step,
         work=work,

@@ -68,6 +68,7 @@ class Stop(IntEnum):
     OUT_OF_MEMORY = 12
     FAR_AWAY = 13
     FOREGONE = 14
+    BEARING_JAMS = 15
     OVERLAP = 20
     UNEXPLAINED = 21
     LEDGER = 22
@@ -85,7 +86,8 @@ class Stop(IntEnum):
     @property
     def gave_up(self) -> bool:
         """True when the solver could not go on, or its result is known to be wrong (exit status 3)."""
-        could_not = Stop.TOO_MANY_EVENTS <= self <= Stop.TOO_MANY_CONTACTS or self in (Stop.OUT_OF_MEMORY, Stop.FAR_AWAY)
+        others = (Stop.OUT_OF_MEMORY, Stop.FAR_AWAY, Stop.BEARING_JAMS)
+        could_not = Stop.TOO_MANY_EVENTS <= self <= Stop.TOO_MANY_CONTACTS or self in others
         return could_not or self.is_wrong
 
 
@@ -102,6 +104,10 @@ _SENTENCES = {
     Stop.LCP_FAILED: (
         "no solution of a complementarity problem was found; lcp_failure.json holds it. Less friction or restitution at the "
         "contacts it names, or a tighter tolerance, may help"
+    ),
+    Stop.BEARING_JAMS: (
+        "a bearing jams: no friction goes with the load that it makes, for a force on its body passes nearer to the pivot than "
+        "friction times radius. A smaller radius or less friction under [[bearings]] helps, or coulomb in place of them"
     ),
     Stop.STEP_TOO_SMALL: "the step became too small for the requested tolerance",
     Stop.NOT_FINITE: "a coordinate or velocity is no longer a finite number",

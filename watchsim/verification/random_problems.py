@@ -15,6 +15,7 @@ from watchsim.dynamics.impact import energy_gain
 from watchsim.dynamics.lcp import LcpOutcome, lcp_work, solve_lcp
 from watchsim.jit import callable_kernel
 from watchsim.model import (
+    BEARING,
     BODY,
     BODY_PAIR,
     CONTACT,
@@ -70,6 +71,7 @@ class BareContacts:
             "bodies": BODY,
             "joints": JOINT,
             "lines": LINE_SPRING,
+            "bearings": BEARING,
             "tables": TABLE,
             "primitives": PRIMITIVE,
             "pairs": BODY_PAIR,
@@ -97,7 +99,7 @@ class BareContacts:
     def energy_change(self) -> float:
         """Of the impact just solved, as the kernel says, J."""
         system, phases = self.work.system, self.work.phases
-        return float(_energy_gain(len(self.taken), system.G, phases.rates, phases.impulse)[0])
+        return float(_energy_gain(2 * len(self.taken), system.G, phases.rates, phases.impulse)[0])
 
     def kinetic(self, u: Array) -> float:
         """J."""
