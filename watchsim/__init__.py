@@ -63,6 +63,7 @@ _HOMES = {
     "sound": "watchsim.analysis.sound",
     "listen": "watchsim.analysis.listen",
     "report": "watchsim.pages.report_page",
+    "card": "watchsim.render.card",
     "show": "watchsim.pages.notebook",
     "profiles_dir": "watchsim.paths",
 }
@@ -89,6 +90,7 @@ if TYPE_CHECKING:
     from watchsim.pages.notebook import show as show
     from watchsim.pages.report_page import report as report
     from watchsim.paths import profiles_dir as profiles_dir
+    from watchsim.render.card import card as card
     from watchsim.render.compare_plot import plot_comparison as plot_comparison
     from watchsim.render.energy_plot import plot_energy as plot_energy
     from watchsim.render.energy_plot import plot_torque as plot_torque

@@ -73,6 +73,7 @@ COMMANDS = (
     "plot",
     "movie",
     "report",
+    "card",
     "live",
     "sound",
     "listen",

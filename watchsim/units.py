@@ -213,6 +213,11 @@ def metric(value: float, unit: str, digits: int = 6) -> str:
     return f"{shown:.12g} {_METRIC[power]}{unit}"
 
 
+def decimals_for(step: float) -> int:
+    """Decimals that make a change of `step` visible."""
+    return min(max(0, -math.floor(math.log10(step) + 1e-9)), 9) if step > 0.0 else 3
+
+
 def signed(value: float, decimals: int) -> str:
     """Fixed decimals, a true minus sign, and no negative zero."""
     text = f"{value:.{decimals}f}"

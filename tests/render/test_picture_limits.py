@@ -19,7 +19,6 @@ from watchsim.render.keyframes import keyframes
 from watchsim.render.marks import (
     changing_speed_text,
     clock,
-    decimals_for,
     goes_round,
     reading,
     scale_bar,
@@ -32,6 +31,7 @@ from watchsim.render.rows import kept_rows
 from watchsim.render.view import dense, poses, sampled, stretch, swept
 from watchsim.scene.scene import Body
 from watchsim.simulation.state import EventKind
+from watchsim.units import decimals_for
 
 DEGREE = math.pi / 180.0
 

@@ -19,7 +19,7 @@ from watchsim.mechanism.compile import scene_size
 from watchsim.scene.roles import keeps_time
 from watchsim.simulation import MOREAU
 from watchsim.simulation.trajectory import Trajectory
-from watchsim.units import metric, signed
+from watchsim.units import decimals_for, metric, signed
 
 UNSOLVED = 1e-6  # share of a contact problem's largest term: what rounding leaves lies far below
 COARSE = 5e-3  # overlap as a share of the mechanism's size, beyond which a step has lost the shapes that touch
@@ -116,6 +116,7 @@ def _lines(columns: Sequence[Sequence[str]]) -> str:
 
 LABEL = 13
 EXACT = 6  # decimals at most
+FINEST = {" ms": 4}  # of a beat error, of which timing machines show one
 AVERAGED = (("amplitude_deg", "amplitude", "°"), ("rate_s_per_d", "rate", " s/d"), ("beat_error_ms", "beat error", " ms"))
 HELPED = (
     ("lcp_copositive", "by the second way (copositive form)"),
@@ -135,6 +136,32 @@ SCATTER = (
 PLAIN = 1e-6  # errors below are written with an exponent
 
 
+def readings(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str, str | None]]:
+    """What a watchmaker reads first, from the numbers of a run: what it is, its value, and what stands below it."""
+    for name, label, unit in AVERAGED:
+        if numbers.get(name) is not None:
+            yield label.capitalize(), *with_error(float(numbers[name]), numbers.get(f"{name}_error"), unit)
+    if numbers.get("vph") is not None:
+        yield "Frequency", f"{numbers['vph']:.2f} vph", f"{numbers['frequency_hz']:.6f} Hz"
+    heard = numbers.get("timegrapher")
+    if heard and heard.get("amplitude_deg") is not None:
+        yield "Timegrapher shows", f"{heard['amplitude_deg']:.0f}°", f"with a lift angle of {heard['lift_angle_deg']:.4g}°"
+    if numbers.get("missed_beats") is not None:
+        yield "Missed beats", str(numbers["missed_beats"]), f"in {numbers['beats']} beats"
+    if numbers.get("efficiency") is not None:
+        yield "Efficiency", f"{100.0 * numbers['efficiency']:.1f} %", "of the drive's work reaches the oscillator"
+
+
+def with_error(value: float, error: float | None, unit: str) -> tuple[str, str | None]:
+    """The value with as many digits as its scatter leaves it, at least two."""
+    if error is None:
+        return f"{signed(value, 3)}{unit}", None
+    finest = FINEST.get(unit, EXACT)
+    decimals = min(max(decimals_for(error), 0 if abs(value) >= 100.0 else 1), finest) if error > 0.0 else 3
+    shown = f"± {error:.{decimals}f}" if error >= 0.5 * 10.0**-decimals else f"below {10.0**-decimals:.{decimals}f}"
+    return f"{signed(value, decimals)}{unit}", f"{shown}{unit}"
+
+
 def headlines(run: Trajectory, numbers: Mapping[str, Any]) -> str:
     """The headline numbers in watchmakers' units, a line each; `numbers` as from `watchsim.analysis.summary.summary(run)`."""
     timing = (*_verdict(numbers), *_timing(numbers), *_places(run, numbers))
@@ -145,13 +172,14 @@ def headlines(run: Trajectory, numbers: Mapping[str, Any]) -> str:
 
 def with_scatter(value: float, error: float | None, unit: str) -> str:
     """ "275.3°, scatter 0.1°": as many decimals as the scatter justifies, three where it is not known; a true minus sign."""
-    if error is not None and max(abs(value), error) < 10.0**-EXACT:
-        return f"below {10.0**-EXACT:.{EXACT}f}{unit}" if error > 0.0 or value else f"0{unit}"
-    decimals = 3 if error is None else _decimals(error)
+    finest = FINEST.get(unit, EXACT)
+    if error is not None and max(abs(value), error) < 10.0**-finest:
+        return f"below {10.0**-finest:.{finest}f}{unit}" if error > 0.0 or value else f"0{unit}"
+    decimals = 3 if error is None else min(_decimals(error), finest)
     text = signed(value, decimals) + unit
     if error is None:
         return text
-    return f"{text}, scatter {max(error, 10.0**-EXACT):.{decimals}f}{unit}"
+    return f"{text}, scatter {max(error, 10.0**-finest):.{decimals}f}{unit}"
 
 
 def _decimals(error: float) -> int:

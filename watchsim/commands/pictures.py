@@ -185,20 +185,10 @@ def plots(run: Trajectory, panels: Kinematics | None = None) -> dict[str, Draw]:
     return {"plots/kinematics.png": plot(lambda: None), f"plots/{last}.png": plot(lambda: whole_beats(run))}
 
 
-def last_beats(run: Trajectory, share: float = 1.5) -> tuple[float, float]:
-    """The last one and a half oscillations, or the last tenth where nothing keeps time, of the last stretch recorded."""
-    from watchsim.render.view import recorded
-    from watchsim.scene.roles import frequency, keeps_time
-
-    start, end = recorded(run)[-1]
-    hertz = frequency(run.scene) if keeps_time(run.scene) else None
-    length = share / hertz if hertz else 0.1 * (end - start)
-    return max(start, end - length), end
-
-
 def whole_beats(run: Trajectory) -> tuple[float, float]:
     """The same, moved back by less than a half swing to the last turning point, where the phases of all beats are known."""
     from watchsim.analysis.timing import beats
+    from watchsim.render.opening import last_beats
     from watchsim.render.view import recorded
     from watchsim.scene.roles import keeps_time
 
@@ -218,6 +208,7 @@ def filmed(run: Trajectory, slow: float) -> tuple[tuple[float, float], float]:
 
     All means the last stretch that was recorded without a gap, in WHOLE_RUN seconds.
     """
+    from watchsim.render.opening import last_beats
     from watchsim.render.view import recorded
     from watchsim.scene.roles import keeps_time
 

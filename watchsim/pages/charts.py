@@ -10,14 +10,13 @@ import numpy as np
 
 from watchsim.pages.html import Markup, element, joined
 from watchsim.pages.player import path_data
-from watchsim.render.marks import decimals_for
 from watchsim.render.opening import sight, touching_room
 from watchsim.render.palette import BLUED, LIGHT, PALE_PICTURE_STYLE, mixed
 from watchsim.render.parts import Part
 from watchsim.render.rows import reduced
 from watchsim.render.view import Frame, View, Window, bounds, hairsprings, poses, room_of, zigzags
 from watchsim.simulation.trajectory import Array, Trajectory
-from watchsim.units import signed
+from watchsim.units import decimals_for, signed
 
 WIDTH, HEIGHT = 560.0, 230.0
 LEFT, RIGHT, TOP, BOTTOM = 88.0, 12.0, 12.0, 44.0  # of the large letters on a phone five fit between label and axis

@@ -11,13 +11,14 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from watchsim.analysis.headlines import AVERAGED, with_error
 from watchsim.analysis.timing import Averages, Beats, averages, beats, last_window
 from watchsim.mechanism.compile import compile_scene
 from watchsim.pages.charts import scatter
 from watchsim.pages.html import Markup, card, element, image, table
 from watchsim.pages.player import shown
 from watchsim.pages.report_page import player_text
-from watchsim.pages.timing_sheet import AVERAGED, both_ways, with_error
+from watchsim.pages.timing_sheet import both_ways
 from watchsim.render.positions_plot import plot_positions
 from watchsim.render.stage import Stage, at_rest
 from watchsim.render.study_plot import axis_label, output_label, plot_sensitivity, plot_sweep, usual_value
@@ -182,7 +183,7 @@ def _means(found: Cycle | Averages) -> list[str]:
     for name, label, unit in AVERAGED:
         value, error = getattr(found, name), getattr(found, f"{name}_error")
         if value is not None:
-            lines.append(" ".join(filter(None, (label.lower(), *with_error(value, error, unit)))))
+            lines.append(" ".join(filter(None, (label, *with_error(value, error, unit)))))
     return lines
 
 

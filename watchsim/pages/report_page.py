@@ -10,12 +10,13 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from watchsim.analysis.phases import Phase, phases_within
+from watchsim.analysis.phases import phases_within
 from watchsim.analysis.summary import summary
 from watchsim.pages.charts import poster
 from watchsim.pages.html import Markup, element, joined, packed_files, page
 from watchsim.pages.player import Channel, TooMuch, channels, drawn_parts, picture_size, player_data, shown
 from watchsim.pages.timing_sheet import sheet, verdict
+from watchsim.render.opening import telling
 from watchsim.render.view import Window, recorded
 from watchsim.results.tables import plain
 from watchsim.simulation.trajectory import Trajectory
@@ -75,7 +76,7 @@ def page_parts(
     """What stands in the places of the page, and the data of its player, without files; `numbers` fill the timing sheet."""
     span, moved, off = _motion(run, window)
     found = phases_within(run, span)
-    opening = _opening(found, span)
+    opening = telling(found, span)
     parts = drawn_parts(run.scene, picture_size(run, span))
     data = player_data(run, span, moved, parts, found, opening)
     data["files"] = {"entries": [], "data": ""}
@@ -102,12 +103,6 @@ def _motion(run: Trajectory, window: Sequence[float] | None) -> tuple[Window, li
                 raise
             span = (0.5 * (span[0] + span[1]), span[1])
     return span, *channels(run, span, size)
-
-
-def _opening(found: list[Phase], span: Window) -> float:
-    """The instant that the page opens with: in the middle of an impulse where there is one."""
-    inside = [one for one in found if one.name == "impulse" and span[0] <= one.start and one.end <= span[1]]
-    return 0.5 * (inside[-1].start + inside[-1].end) if inside else span[0]
 
 
 def _lead(run: Trajectory, span: Window) -> str:

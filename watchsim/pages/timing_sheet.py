@@ -10,19 +10,18 @@ from typing import Any
 import numpy as np
 
 from watchsim.analysis.flows import energy_shares
-from watchsim.analysis.headlines import expected_text, headlines
+from watchsim.analysis.headlines import AVERAGED, expected_text, headlines, readings
 from watchsim.analysis.phases import Phase, each_phase
 from watchsim.analysis.timing import Beats, beats
 from watchsim.escapement.function_report import Table, measured, tables
 from watchsim.escapement.measure import measure
 from watchsim.pages.charts import Dots, bars, scatter, strip
 from watchsim.pages.html import Content, Markup, element, joined, section, table
-from watchsim.render.marks import decimals_for
 from watchsim.render.palette import ENERGIES
 from watchsim.scene.roles import swings
 from watchsim.scene.scene import Scene
 from watchsim.simulation.trajectory import Array, Trajectory
-from watchsim.units import metric, signed
+from watchsim.units import decimals_for, metric, signed
 
 
 def function_tables(scene: Scene) -> Iterator[Markup]:
@@ -170,12 +169,9 @@ def _mean(values: Array) -> str:
     return f"{signed(float(np.mean(values)), decimals)}{scatter}"
 
 
-AVERAGED = (("amplitude_deg", "Amplitude", "°"), ("rate_s_per_d", "Rate", " s/d"), ("beat_error_ms", "Beat error", " ms"))
-
-
 def timekeeping(run: Trajectory, numbers: Mapping[str, Any]) -> Iterator[Markup]:
     """The section; nothing where nothing swings."""
-    cards = list(_cards(numbers))
+    cards = [_card(*reading) for reading in readings(numbers)]
     if not cards and not swings(run.scene):
         return
     note = None
@@ -201,32 +197,6 @@ def _computed(numbers: Mapping[str, Any]) -> str:
         return ""
     moved = [f"{found['differences'][name]:.1g}{unit}" for name, _, unit in AVERAGED if name in found["differences"]]
     return f"; a more exact run moved them by {', '.join(moved)}" if moved else ""
-
-
-def _cards(numbers: Mapping[str, Any]) -> Iterator[Markup]:
-    """What a watchmaker reads first."""
-    for name, label, unit in AVERAGED:
-        if numbers.get(name) is not None:
-            yield _card(label, *with_error(float(numbers[name]), numbers.get(f"{name}_error"), unit))
-    if numbers.get("vph") is not None:
-        yield _card("Frequency", f"{numbers['vph']:.2f} vph", f"{numbers['frequency_hz']:.6f} Hz")
-    heard = numbers.get("timegrapher")
-    if heard and heard.get("amplitude_deg") is not None:
-        lift = f"with a lift angle of {heard['lift_angle_deg']:.4g}°"
-        yield _card("Timegrapher shows", f"{heard['amplitude_deg']:.0f}°", lift)
-    if numbers.get("missed_beats") is not None:
-        yield _card("Missed beats", str(numbers["missed_beats"]), f"in {numbers['beats']} beats")
-    if numbers.get("efficiency") is not None:
-        yield _card("Efficiency", f"{100.0 * numbers['efficiency']:.1f} %", "of the drive's work reaches the oscillator")
-
-
-def with_error(value: float, error: float | None, unit: str) -> tuple[str, str | None]:
-    """The value with as many digits as its scatter leaves it, at least two."""
-    if error is None:
-        return f"{signed(value, 3)}{unit}", None
-    decimals = min(max(decimals_for(error), 0 if abs(value) >= 100.0 else 1), 6) if error > 0.0 else 3
-    shown = f"{error:.{decimals}f}" if error >= 0.5 * 10.0**-decimals else f"{error:.0e}"
-    return f"{signed(value, decimals)}{unit}", f"± {shown}{unit}"
 
 
 def _card(label: str, value: str, below: str | None) -> Markup:
@@ -297,6 +267,8 @@ def verdict(numbers: Mapping[str, Any]) -> Markup | None:
         return None
     look, words = VERDICTS.get(str(word), ("open", str(word).capitalize()))
     more = str(message or "")
+    if "the clock" in more:
+        words = words.replace("watch", "clock")
     if more.casefold().startswith(words.casefold()):  # said once is enough
         more = more[len(words) :]
     elif more:

@@ -25,7 +25,7 @@ from watchsim.scene.scene import Body, Scene
 from watchsim.simulation.state import EventKind
 from watchsim.simulation.trajectory import Array, Trajectory, frames
 from watchsim.storage.columns import blocks
-from watchsim.units import signed
+from watchsim.units import decimals_for, signed
 
 # An arrow begins where two bodies touch and tells the force on that one of them which comes later in the scene and can move:
 # on the lever from the wheel, on the balance from the lever. All arrows of a movie have one scale.
@@ -277,11 +277,6 @@ def clock(window: Window) -> Clock:
     decimals = ROUND - math.floor(math.log10(duration))
     base = math.floor(start * 10.0**decimals + 1e-6) / 10.0**decimals
     return Clock(base, 1e6, "µs") if duration < 1e-3 else Clock(base, 1e3, "ms")
-
-
-def decimals_for(step: float) -> int:
-    """Decimals that make a change of `step` visible."""
-    return min(max(0, -math.floor(math.log10(step) + 1e-9)), 9) if step > 0.0 else 3
 
 
 def speed_text(speed: float) -> str:

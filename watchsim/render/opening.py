@@ -1,4 +1,4 @@
-"""Which part of a mechanism does a picture show when nobody has said so?
+"""Which part of a mechanism does a picture show when nobody has said so, and at which instant?
 
 What touches: a clock's escapement beside its pendulum, the pallets of a verge between its racks. The whole stands small beside
 it, with a rectangle around what is shown. Where that would hardly enlarge anything, the whole is the picture.
@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from watchsim.analysis.phases import Phase
 from watchsim.render.marks import ContactMarks
 from watchsim.render.parts import outline
 from watchsim.render.view import (
@@ -25,12 +26,14 @@ from watchsim.render.view import (
     nearest,
     placed,
     poses,
+    recorded,
     room_of,
     size_of,
     swept,
     upright,
     view,
 )
+from watchsim.scene.roles import frequency, keeps_time
 from watchsim.scene.scene import Scene
 from watchsim.simulation.trajectory import Array, Trajectory
 
@@ -134,3 +137,17 @@ def _parted(room: Frame, low: Array, high: Array, gap: float) -> tuple[Frame, Fr
     height = min(height, width * tall / wide + gap)
     box = Frame(room.left + gap, room.bottom + room.height - gap - height, width, height)
     return Frame(box.left + width, room.bottom, room.width - width - gap, room.height), box
+
+
+def telling(found: Sequence[Phase], window: Window) -> float:
+    """The instant (s) of a window to look at first: the middle of its last impulse, else its beginning."""
+    inside = [one for one in found if one.name == "impulse" and window[0] <= one.start and one.end <= window[1]]
+    return 0.5 * (inside[-1].start + inside[-1].end) if inside else window[0]
+
+
+def last_beats(run: Trajectory, share: float = 1.5) -> Window:
+    """The last one and a half oscillations, or the last tenth where nothing keeps time, of the last stretch recorded."""
+    start, end = recorded(run)[-1]
+    hertz = frequency(run.scene) if keeps_time(run.scene) else None
+    length = share / hertz if hertz else 0.1 * (end - start)
+    return max(start, end - length), end
