@@ -99,6 +99,20 @@ def test_a_solution_is_found_exactly_when_there_is_one() -> None:
     assert lower > 0
 
 
+def test_a_problem_posed_again_is_not_solved_again_and_one_that_differs_by_a_bit_is() -> None:
+    work, size, A, b = compression(np.random.default_rng(73), 3, 4, 1.0)
+    problem = work.problem
+    asked(SOLVE, work, 3, 3)
+    x, problem.known.x[Level.COMPRESSION, :size] = problem.x[:size].copy(), 7.0
+    asked(SOLVE, work, 3, 3)
+    assert np.all(problem.x[:size] == 7.0)
+    for values, place in ((problem.A, (1, 2)), (problem.rhs, 1)):
+        values[place] = np.nextafter(values[place], 9.0)
+        asked(SOLVE, work, 3, 3)
+        assert problem.x[:size] == pytest.approx(x, rel=1e-9, abs=1e-12)
+        assert residual(A, b, problem.x[:size]) < 1e-9
+
+
 @pytest.mark.slow
 def test_a_solution_is_found_exactly_when_there_is_one_many_times() -> None:
     check_against_the_oracle(100_000, 72)

@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 from watchsim.dynamics.lcp import (
     LcpOutcome,
     LcpWork,
+    Level,
     Solver,
     is_solution,
     lemke_checked,
@@ -94,6 +95,21 @@ class LastProblem:
     jammed: int  # 1: of the bearings no friction goes with the load that it makes
 
 
+class KnownProblem(NamedTuple):
+    """The last problem of each `Level` that was solved, and its solution."""
+
+    size: Integers  # (levels,) its number of unknowns, 0: none yet
+    solver: Integers  # (levels,) a Solver
+    lemke: Integers  # (levels,) an LcpOutcome
+    A: Array  # (levels, side, side)
+    rhs: Array  # (levels, side)
+    x: Array  # (levels, side)
+    is_active: Integers  # (levels, side) see `LcpWork`
+
+
+KnownProblemRef = by_reference(KnownProblem, __name__)
+
+
 class FrictionProblem(NamedTuple):
     """The complementarity problem of the closed contacts, and of the bearings that dry friction might hold.
 
@@ -102,6 +118,7 @@ class FrictionProblem(NamedTuple):
     """
 
     lcp: LcpWork
+    known: KnownProblem
     last: LastProblem
     solvers: Integers  # problems solved since last counted, by `Solver`; the last one counts those without a solution
     sizes: Integers  # the same problems by their number of unknowns, see `LARGEST`
@@ -137,7 +154,15 @@ def friction_problem(room: int, coordinates: int, lcp: LcpWork) -> FrictionProbl
     parts: dict[str, Any] = {name: np.zeros(length) for name, length in lengths.items()}
     parts |= {name: np.zeros(length, np.int64) for name, length in counts.items()}
     parts |= {name: np.zeros((side, side)) for name in ("A", "B")}
-    return FrictionProblem(lcp=lcp, last=blank(LastProblem), friction_sign=np.ones(rows), **parts)
+    return FrictionProblem(lcp=lcp, last=blank(LastProblem), known=_known(side), friction_sign=np.ones(rows), **parts)
+
+
+def _known(side: int) -> KnownProblem:
+    """None yet, with room for `side` unknowns."""
+    levels = len(Level)
+    size, solver, lemke = np.zeros((3, levels), np.int64)
+    rhs, x = np.zeros((2, levels, side))
+    return KnownProblem(size, solver, lemke, np.zeros((levels, side, side)), rhs, x, np.zeros((levels, side), np.int64))
 
 
 def problem_size(room: int, coordinates: int) -> int:
@@ -324,8 +349,22 @@ def solve_contacts(m, elements, bearings, level, problem):
     """
     last, n = problem.last, m + 2 * elements
     last.contacts, last.elements, last.bearings, last.level = m, elements, bearings, level
+    if _is_known(n, level.value, problem):
+        solver = _recall(n, level.value, problem)
+    else:
+        solver = _solve_anew(m, elements, problem)
+        _keep_solution(n, level.value, solver, problem)
+    problem.solvers[solver] += 1
+    problem.sizes[size_class(n)] += 1
+    return solver
+
+
+@kernel
+def _solve_anew(m, elements, problem):
+    """The number of the `Solver`, see `solve_contacts`."""
+    n = m + 2 * elements
     outcome = lemke_checked(problem.A, problem.rhs, n, problem.lcp, problem.x)
-    last.lemke = outcome
+    problem.last.lemke = outcome
     solver = Solver.LEMKE
     if outcome != LcpOutcome.SOLVED:
         solver = Solver.FAILED
@@ -337,9 +376,52 @@ def solve_contacts(m, elements, bearings, level, problem):
             solver = Solver.ENUMERATED
         elif _detour(n, True, problem):
             solver = Solver.INEXACT
-    problem.solvers[solver.value] += 1
-    problem.sizes[size_class(n)] += 1
-    return solver
+    return solver.value
+
+
+# At one impact the compression is posed again for every rebound that ends, and the same modes are decided for each and once
+# more when all is over: a problem that is the last one of its level to the bit has its solution.
+
+
+@kernel
+def _is_known(n, level, problem):
+    """True if the problem of n unknowns is the last one solved at this level."""
+    known = problem.known
+    if known.size[level] != n:
+        return False
+    for i in range(n):
+        if known.rhs[level, i] != problem.rhs[i]:
+            return False
+    for i in range(n):
+        for j in range(n):
+            if known.A[level, i, j] != problem.A[i, j]:
+                return False
+    return True
+
+
+@kernel
+def _recall(n, level, problem):
+    """Its solution into `problem.x`; returns the number of the `Solver`."""
+    known = problem.known
+    for i in range(n):
+        problem.x[i], problem.lcp.is_active[i] = known.x[level, i], known.is_active[level, i]
+    problem.last.lemke = known.lemke[level]
+    return known.solver[level]
+
+
+@kernel
+def _keep_solution(n, level, solver, problem):
+    """Remember the problem just solved."""
+    known = problem.known
+    known.size[level], known.solver[level], known.lemke[level] = n, solver, problem.last.lemke
+    for i in range(n):
+        known.rhs[level, i], known.x[level, i], known.is_active[level, i] = (
+            problem.rhs[i],
+            problem.x[i],
+            problem.lcp.is_active[i],
+        )
+        for j in range(n):
+            known.A[level, i, j] = problem.A[i, j]
 
 
 @kernel

@@ -30,6 +30,7 @@ class FreeForces(NamedTuple):
     constant: Array  # the constant part of each
     slack: Array  # what each may miss without a mode ending
     value: Array  # of each with the forces as they are
+    gain: Array  # what each free direction does for each, one law a row
     gains: Array  # what the multiplier of one does for another
     multiplier: Array
 
@@ -58,10 +59,10 @@ def mode_system(room: int, coordinates: int, lcp: LcpWork) -> ModeSystem:
     """For `room` closed contacts; `lcp` is room for its laws."""
     unknowns, laws = 2 * room, 3 * room + 2 * coordinates
     vectors = {"weight": unknowns, "constant": laws, "slack": laws, "value": laws, "multiplier": laws}
-    shapes = {"free": (unknowns, unknowns), "laws": (laws, unknowns), "gains": (laws, laws), **vectors}
+    tables = {"free": (unknowns, unknowns), "laws": (laws, unknowns), "gain": (laws, unknowns), "gains": (laws, laws)}
     own = {"friction": room, "drag": room, "A": (unknowns, unknowns), "rhs": unknowns, "x": unknowns, "scale": unknowns}
     return ModeSystem(
-        FreeForces(lcp=lcp, **{name: np.zeros(shape) for name, shape in shapes.items()}),
+        FreeForces(lcp=lcp, **{name: np.zeros(shape) for name, shape in (tables | vectors).items()}),
         unknown=np.zeros(room, np.int64),
         order=np.zeros(unknowns, np.int64),
         **{name: np.zeros(shape) for name, shape in own.items()},
@@ -309,6 +310,7 @@ def _gain(law, n, vector):
 def _keep_laws(laws, n, count, redundant, out_x):
     """The smallest change along the free directions that fulfils all laws: the dual problem, positive semidefinite."""
     vectors, value, multiplier, law = redundant.free, redundant.value, redundant.multiplier, redundant.laws
+    gain, gains = redundant.gain, redundant.gains
     largest, worst = 0.0, 0.0
     for j in range(n):
         largest = max(largest, abs(out_x[j]))
@@ -320,19 +322,22 @@ def _keep_laws(laws, n, count, redundant, out_x):
     for line in range(laws):
         if value[line] >= -LAW_SLACK * largest:
             value[line] = max(value[line], 0.0)
-        for other in range(laws):
+        for v in range(count):
+            gain[line, v] = _gain(law[line], n, vectors[v])
+    for line in range(laws):
+        for other in range(line + 1):
             total = 0.0
             for v in range(count):
-                total += _gain(law[line], n, vectors[v]) * _gain(law[other], n, vectors[v])
-            redundant.gains[line, other] = total
-    if lemke_checked(redundant.gains, value, laws, redundant.lcp, multiplier) != LcpOutcome.SOLVED:
+                total += gain[line, v] * gain[other, v]
+            gains[line, other], gains[other, line] = total, total
+    if lemke_checked(gains, value, laws, redundant.lcp, multiplier) != LcpOutcome.SOLVED:
         for line in range(laws):
             value[line] += redundant.slack[line]
-        if lemke_checked(redundant.gains, value, laws, redundant.lcp, multiplier) != LcpOutcome.SOLVED:
+        if lemke_checked(gains, value, laws, redundant.lcp, multiplier) != LcpOutcome.SOLVED:
             return  # no forces obey the laws: the mode has ended, and its monitors say so
     for v in range(count):
         share = 0.0
         for line in range(laws):
-            share += _gain(law[line], n, vectors[v]) * multiplier[line]
+            share += gain[line, v] * multiplier[line]
         for j in range(n):
             out_x[j] += share * vectors[v, j]

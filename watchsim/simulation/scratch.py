@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from watchsim.contact.gaps import OPEN, STICK, Closed, ClosedRef, closed_contacts, poses
 from watchsim.dynamics.delassus import ContactSystem, ContactSystemRef, contact_system
-from watchsim.dynamics.friction import FrictionProblem, FrictionProblemRef, friction_problem, problem_size
+from watchsim.dynamics.friction import FrictionProblem, FrictionProblemRef, KnownProblemRef, friction_problem, problem_size
 from watchsim.dynamics.impact import ImpactPhases, ImpactPhasesRef, impact_phases
 from watchsim.dynamics.lcp import LcpWorkRef, lcp_work
 from watchsim.dynamics.redundant import FreeForcesRef, ModeSystem, ModeSystemRef, mode_system
@@ -178,7 +178,7 @@ def contact_work_by_reference(work):
     return ContactWorkRef(
         ContactSystemRef(*work.system),
         ModeSystemRef(FreeForcesRef(LcpWorkRef(*modes.redundant.lcp), *modes.redundant[1:]), *modes[1:]),
-        FrictionProblemRef(LcpWorkRef(*problem.lcp), *problem[1:]),
+        FrictionProblemRef(LcpWorkRef(*problem.lcp), KnownProblemRef(*problem.known), *problem[2:]),
         ImpactPhasesRef(*work.phases),
     )
 
