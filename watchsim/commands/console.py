@@ -241,14 +241,19 @@ def add_study_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--json", action="store_true", help="print one JSON object")
 
 
-def parse_positive(option: str, text: str, dimension: Dimension) -> float:
-    """The value of a command-line option such as `--snap "0.01 mm"` in SI units; above zero."""
+def parse_quantity(option: str, text: str, dimension: Dimension) -> float:
+    """The value of a command-line option such as `--section "0.15 mm"` in SI units."""
     from watchsim.units import UnitError, parse
 
     try:
-        value = parse(text, dimension)
+        return parse(text, dimension)
     except UnitError as error:
         raise InputError(f'{option} "{text}": {error}') from error
+
+
+def parse_positive(option: str, text: str, dimension: Dimension) -> float:
+    """The same, above zero."""
+    value = parse_quantity(option, text, dimension)
     if not value > 0.0:
         raise InputError(f'{option} "{text}": must be positive.')
     return value

@@ -115,12 +115,12 @@ def swept_run(folder: str) -> None:
 
 # How does a scene start from drawings?
 
-ENDINGS = (".dxf", ".svg", ".svgz")
-
 
 def is_drawing(name: str) -> bool:
     """Is it the path of a drawing, and not the name of a design?"""
-    return Path(name).suffix.lower() in ENDINGS or Path(name).is_file()
+    from watchsim.drawing.read import ENDINGS
+
+    return Path(name).suffix.lower().lstrip(".") in ENDINGS or Path(name).is_file()
 
 
 def unused_folder(folder: Path, force: bool) -> Path:

@@ -11,7 +11,16 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from watchsim.commands.console import BAD_INPUT, FINE, InputError, check_picture, parse_positive, print_json, say
+from watchsim.commands.console import (
+    BAD_INPUT,
+    FINE,
+    InputError,
+    check_picture,
+    parse_positive,
+    parse_quantity,
+    print_json,
+    say,
+)
 
 if TYPE_CHECKING:
     from watchsim.drawing.drawing import Drawing
@@ -21,11 +30,12 @@ HELP = "read a drawing: units, size, layers, loops, lines, arcs, faults"
 
 
 def options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", metavar="FILE", help="a DXF or SVG drawing")
+    parser.add_argument("file", metavar="FILE", help="a DXF or SVG drawing, or a solid: STL, OBJ, GLB or 3MF")
     parser.add_argument("--units", metavar="UNIT", help="read lengths in this unit (mm, inch, ...) whatever the file says")
     parser.add_argument("--layer", metavar="NAMES", help="only these layers, with commas between them")
     parser.add_argument("--snap", metavar="LENGTH", help='join ends that lie this close, such as "2 µm" (default 1 µm)')
     parser.add_argument("--fit", metavar="LENGTH", help='follow splines and ellipses this closely by arcs (default "0.1 µm")')
+    parser.add_argument("--section", metavar="HEIGHT", help='cut a solid at this height along its z axis, such as "0.15 mm"')
     parser.add_argument("--json", action="store_true", help="print one JSON object instead of text")
     parser.add_argument("--png", metavar="FILE", help="where to write the picture (default: none)")
     parser.add_argument("--centres", action="store_true", help="mark the centres of arcs in the picture")
@@ -42,8 +52,9 @@ def run(args: argparse.Namespace) -> int:
         secured_file(Path(args.png), "the picture")
     asked = {name: getattr(args, name) for name in ("snap", "fit")}
     lengths = {name: parse_positive(f"--{name}", text, LENGTH) for name, text in asked.items() if text is not None}
+    section = None if args.section is None else parse_quantity("--section", args.section, LENGTH)
     try:
-        drawing = read(args.file, units=args.units, **lengths)
+        drawing = read(args.file, units=args.units, section=section, **lengths)
     except ValueError as error:
         raise InputError(f"{args.file}: {error}") from error
     if args.layer:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from watchsim.geometry.primitives import Edge, Point
 from watchsim.units import LENGTH, UnitError, known_unit
@@ -105,11 +106,23 @@ class Inserted:
     last: int
 
 
+class Slab(NamedTuple):
+    """Of a solid: the heights (m) between two at which its section changes; `same` where it does not between them."""
+
+    bottom: float
+    top: float
+    same: bool
+
+    @property
+    def middle(self) -> float:
+        return 0.5 * (self.bottom + self.top)
+
+
 @dataclass(frozen=True)
 class Facts:
     """What is known of a drawing from its file alone. Lengths are metres, in the coordinates of the drawing.
 
-    format          "dxf" or "svg"
+    format          "dxf", "svg", or of a solid "stl", "obj", "glb", "3mf"
     units           as the file (or the caller) gave it; None where neither did: lengths are then what they would be in
                     millimetres, and a finding of severity "error" says so
     units_from      "header", "option" or "page"; None when unknown
@@ -117,6 +130,7 @@ class Facts:
     fitted_curves, fitted_arcs, fitted_deviation  curves followed by arcs, how many arcs, and a bound of their deviation (m)
     ignored         what was not read, by kind
     drawn           what the file holds before doubles are taken out and curves are fitted
+    section, slabs  of a solid: the height (m) at which it is cut, None of a drawing; and its stretches of heights
     data            the file itself, byte by byte
     """
 
@@ -129,6 +143,8 @@ class Facts:
     fitted_deviation: float = 0.0
     ignored: dict[str, int] = field(default_factory=dict)
     drawn: Drawn = field(default_factory=Drawn)
+    section: float | None = None
+    slabs: tuple[Slab, ...] = ()
     findings: tuple[Finding, ...] = ()
     data: bytes = field(default=b"", repr=False, compare=False)
 

@@ -50,6 +50,8 @@ def inspect_report(drawing: Drawing) -> dict[str, object]:
         },
         "drawn": {"kinds": dict(drawing.drawn.kinds), "length_mm": 1e3 * drawing.drawn.length},
         "ignored": dict(drawing.ignored),
+        "section_mm": None if drawing.section is None else 1e3 * drawing.section,
+        "slabs": [{"from_mm": 1e3 * one.bottom, "to_mm": 1e3 * one.top, "same": one.same} for one in drawing.slabs],
         "findings": [finding.as_dict() for finding in drawing.findings],
         "lines": lines,
         "arcs": arcs,
@@ -98,7 +100,12 @@ def inspect_text(drawing: Drawing) -> str:
     everything = (*drawing.loops, *drawing.open_chains)
     parts = [str(drawing.path)]
     if drawing.layers or drawing.units:
-        parts += [*units_lines(drawing), *size_lines(drawing, extents(everything)), *layer_lines(drawing)]
+        parts += [
+            *units_lines(drawing),
+            *section_lines(drawing),
+            *size_lines(drawing, extents(everything)),
+            *layer_lines(drawing),
+        ]
     if drawing.fitted_curves:
         deviation = drawing.fitted_deviation
         worst = f"{1e6 * deviation:.3g} µm" if deviation > NOTHING else f"{1e12 * NOTHING:g} pm"
@@ -119,6 +126,18 @@ def units_lines(drawing: Drawing) -> list[str]:
         return ["  units: not stated; lengths are shown as if in mm"]
     origin = {"header": "as the file says", "option": "as you say", "page": "as the page says"}
     return [f"  units: {drawing.units}, {origin.get(drawing.units_from or '', 'unknown origin')}"]
+
+
+def section_lines(drawing: Drawing) -> list[str]:
+    """Of a solid: where it is cut, and between which heights its section stays the same."""
+    if drawing.section is None:
+        return []
+    rows = [f"{1e3 * one.bottom:.6g} to {1e3 * one.top:.6g} mm" for one in drawing.slabs[:SHOWN]]
+    said = [
+        row + (", the same all the way" if one.same else ", changes") for row, one in zip(rows, drawing.slabs, strict=False)
+    ]
+    more = [f"    and {len(drawing.slabs) - SHOWN} more"] if len(drawing.slabs) > SHOWN else []
+    return [f"  cut at {1e3 * drawing.section:.6g} mm; its sections by height:", *(f"    {row}" for row in said), *more]
 
 
 def size_lines(drawing: Drawing, box: Box | None) -> list[str]:

@@ -23,20 +23,26 @@ from watchsim.units import metric
 
 FIT = 1e-7
 LARGEST_FILE = 75_000_000  # bytes; to take it apart needs thirteen times as much memory
+MESHES = ("stl", "obj", "glb", "3mf")
+ENDINGS = ("dxf", "svg", "svgz", *MESHES)
+OTHER_SOLIDS = ("step", "stp", "iges", "igs", "brep", "sldprt", "ipt", "f3d", "fcstd")
 SMALLEST = 20.0  # times the snap: the smallest drawing that is believed
 LARGEST = 10.0  # m: the largest
 
 
-def read(path: Path | str, units: str | None = None, snap: float = SNAP, fit: float = FIT) -> Drawing:
+def read(
+    path: Path | str, units: str | None = None, snap: float = SNAP, fit: float = FIT, section: float | None = None
+) -> Drawing:
     """Reads a drawing. `units` overrules what the file says; `snap` and `fit` are in metres.
 
+    A solid (STL, OBJ, GLB, 3MF) is cut at the height `section`, metres along its z axis.
     Raises ValueError where `units` is not a unit of length, or `snap` or `fit` is not positive.
     """
     path = Path(path)
     if not snap > 0.0 or not fit > 0.0:
         raise ValueError(f"snap and fit must be positive lengths, not {snap:g} m and {fit:g} m")
     ending = path.suffix.lower().lstrip(".")
-    return assembled(path, ending, lambda: read_content(path, ending, units, fit), snap)
+    return assembled(path, ending, lambda: read_content(path, ending, units, fit, section), snap)
 
 
 def read_data(data: bytes, path: Path, units: str | None = None, snap: float = SNAP, fit: float = FIT) -> Drawing:
@@ -63,6 +69,13 @@ def assembled(path: Path, ending: str, reader: Callable[[], Content], snap: floa
     return Drawing(path=path, loops=chains.loops, open_chains=chains.open_chains, layers=tuple(layers), **facts)
 
 
+def unread_solid(name: str, ending: str) -> Finding:
+    """The error for a solid of exact surfaces, or in a format of one program only."""
+    message = f'"{name}" is a solid in the format {ending.upper()}, which is not read'
+    fix = "Export it as STL or 3MF with chords within 0.2 µm, from your CAD program or from FreeCAD, which opens STEP and IGES."
+    return Finding("format", "error", message, fix)
+
+
 @contextmanager
 def collector_paused() -> Iterator[None]:
     """A drawing is very many small objects and no cycles; Python's collector would walk over them again and again."""
@@ -75,13 +88,16 @@ def collector_paused() -> Iterator[None]:
             gc.enable()
 
 
-def read_content(path: Path, ending: str, units: str | None, fit: float) -> Content:
+def read_content(path: Path, ending: str, units: str | None, fit: float, section: float | None = None) -> Content:
     """What the reader for that ending and content finds; a file that is not there or cannot be opened is a finding too."""
     if path.is_dir():
         return Content(findings=(Finding("unreadable", "error", f"{path} is a folder", "Name one of the drawings in it."),))
-    if ending not in ("dxf", "svg", "svgz"):
+    if ending in OTHER_SOLIDS:
+        return Content(findings=(unread_solid(path.name, ending),))
+    if ending not in ENDINGS:
         message = f'"{path.name}" ends in neither .dxf nor .svg: this kind of file is not read'
-        return Content(findings=(Finding("format", "error", message, "Save the drawing as DXF or SVG."),))
+        fix = "Save the drawing as DXF or SVG, a solid as STL, OBJ, GLB or 3MF."
+        return Content(findings=(Finding("format", "error", message, fix),))
     try:
         size = path.stat().st_size
         if size > LARGEST_FILE:
@@ -92,11 +108,18 @@ def read_content(path: Path, ending: str, units: str | None, fit: float) -> Cont
     except OSError as error:
         reason = "there is no such file" if isinstance(error, FileNotFoundError) else error.strerror or "it cannot be read"
         return Content(findings=(Finding("unreadable", "error", f"{path}: {reason}"),))
-    return content_of(data, ending, units, fit)
+    return content_of(data, ending, units, fit, section)
 
 
-def content_of(data: bytes, ending: str, units: str | None, fit: float) -> Content:
+def content_of(data: bytes, ending: str, units: str | None, fit: float, section: float | None = None) -> Content:
     """What the reader for that ending and content finds in a file's bytes."""
+    if ending in MESHES:
+        from watchsim.drawing.sections import read_solid
+
+        return replace(read_solid(data, ending, units, fit, section), format=ending, data=data)
+    if section is not None:
+        finding = Finding("section", "error", f"a {ending.upper()} file is flat: only solids are cut", "Leave out section.")
+        return Content(findings=(finding,), format=ending, data=data)
     form = format_of(data, ending[:3])
     if form == "svg":
         from watchsim.drawing.svg import read_svg

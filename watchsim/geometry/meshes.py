@@ -9,11 +9,12 @@ appendix C).
 from __future__ import annotations
 
 import functools
+import io
 import math
 from collections.abc import Iterable, Mapping, MutableMapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any, cast
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 import shapely
@@ -279,3 +280,43 @@ def _arc(points: Sequence[Point], closed: bool, number: int) -> Arc:
     radius = math.fsum(math.dist(p, (x, y)) for p in points) / 3.0
     sweep = TURN if closed else side * (middle - start) % TURN + side * (end - middle) % TURN
     return Arc(x, y, radius, start, side * sweep)
+
+
+class Solid(NamedTuple):
+    """A named mesh of a file: vertices (n, 3) in the file's unit, all different, and faces (m, 3), which have an area."""
+
+    name: str
+    vertices: Array
+    faces: NDArray[np.int64]
+
+
+UNNAMED = "0"
+LENGTHS = {"micron": "µm", "millimeter": "mm", "millimeters": "mm", "centimeter": "cm", "meter": "m", "foot": "ft"}  # of 3MF
+
+
+def solids_of(data: bytes, ending: str) -> tuple[list[Solid], str | None]:
+    """The meshes of an STL, OBJ, GLB or 3MF file, placed as its scene says, and its unit, where it has one.
+
+    Whatever trimesh raises goes on: ImportError where it lacks a package for that format, anything else where the file is
+    damaged. Other files, such as textures, are not read.
+    """
+    more: dict[str, Any] = {"skip_materials": True} if ending == "obj" else {}
+    loaded: Any = trimesh.load(io.BytesIO(data), file_type=ending, process=False, **more)
+    scene = loaded if isinstance(loaded, trimesh.Scene) else trimesh.Scene(loaded)
+    found = []
+    for node in scene.graph.nodes_geometry:
+        matrix, name = scene.graph[node]
+        mesh = scene.geometry[name]
+        if not isinstance(mesh, trimesh.Trimesh) or not len(mesh.faces):
+            continue
+        points = trimesh.transform_points(np.asarray(mesh.vertices, float), matrix)
+        if not np.isfinite(points).all():
+            raise ValueError("it has coordinates that are not finite")
+        # Corners of neighbours are equal to the last bit; within a tolerance small parts in metres would melt.
+        vertices, number = np.unique(points, axis=0, return_inverse=True)
+        faces = number.reshape(-1)[np.asarray(mesh.faces)]
+        sides = np.diff(vertices[faces], axis=1)
+        faces = faces[np.any(np.cross(sides[:, 0], sides[:, 1]) != 0.0, axis=1)]
+        found.append(Solid(str(node) if ending in ("glb", "3mf") else UNNAMED, vertices, faces))
+    unit = "m" if ending == "glb" else scene.units if ending == "3mf" else None
+    return found, LENGTHS.get(str(unit), unit)

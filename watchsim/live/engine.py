@@ -340,9 +340,9 @@ def _faulty(path: Path, error: SceneError) -> Iterator[tuple[str, Drawing]]:
         named = dict.fromkeys(fault.key.split(".")[1] for fault in error.faults if fault.key.startswith("bodies."))
         entries = {bodies[name]["drawing"]: bodies[name] for name in named if "drawing" in bodies.get(name, {})}
         for name, entry in entries.items():
-            snap = {"snap": parse(entry["snap"], LENGTH)} if "snap" in entry else {}
+            lengths = {key: parse(entry[key], LENGTH) for key in ("snap", "section") if key in entry}
             with contextlib.suppress(OSError, ValueError):
-                yield name, read(folder / name, units=entry.get("units"), **snap)
+                yield name, read(folder / name, units=entry.get("units"), **lengths)
 
 
 def _place(x: float | None, y: float | None) -> str:

@@ -185,10 +185,11 @@ TEETH: Keys = {
     "towards": _angle("of the drawing, where the wobble is seen"),
 }
 BODY: Keys = {
-    "drawing": _text("DXF or SVG file, relative to the scene"),
+    "drawing": _text("DXF or SVG file, or a solid (STL, OBJ, GLB, 3MF), relative to the scene"),
     "layers": Key(doc="layers whose closed outlines can touch", form=TEXTS, absent="all but the pivot's"),
     "draw": Key(doc="layers that are drawn though they cannot touch", form=TEXTS, absent="all others"),
     "units": _text("unit of the drawing", absent="the file's"),
+    "section": _length("height, along z, at which a solid is cut", absent="where it is the same at all heights: there"),
     "snap": _length(
         "ends this close are one point", default=1e-6, limits=_above_zero("it is the gap that may be closed"), absent="1 µm"
     ),

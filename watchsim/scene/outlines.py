@@ -277,7 +277,7 @@ def read_outlines(table: Table, folder: Path, made: Made) -> Outlines:
     sources = [key for key in ("drawing", *SHAPES) if key in table]
     for extra in sources[1:]:
         table.fault(extra, f"a body has one outline: leave out {extra} or {sources[0]}")
-    for key in ("layers", "draw", "units", "snap", "material", "adjust", "teeth"):
+    for key in ("layers", "draw", "units", "section", "snap", "material", "adjust", "teeth"):
         if key in table and sources and sources[0] != "drawing":
             table.fault(key, f"belongs to a drawing; this body is a {sources[0]}")
     if "drawing" in table:
@@ -345,6 +345,7 @@ def _open(table: Table, folder: Path, made: Made) -> Drawing | None:
     snap = table.quantity("snap")
     stated = table.text("units")
     units = stated if isinstance(table.mapping.get("units"), str) else None
+    section = table.quantity("section") if "section" in table else None
     if name in made and not math.isnan(snap):
         return drawing_of(made[name], name, snap)
     if not path.is_file() or math.isnan(snap):
@@ -353,7 +354,7 @@ def _open(table: Table, folder: Path, made: Made) -> Drawing | None:
         return None
     try:
         stamp = path.stat()
-        return cached_drawing(path, units, snap, (stamp.st_mtime_ns, stamp.st_size))
+        return cached_drawing(path, units, snap, section, (stamp.st_mtime_ns, stamp.st_size))
     except ValueError as error:
         table.fault("units" if "units" in table else "drawing", str(error), with_value=True)
     except OSError as error:
@@ -362,11 +363,11 @@ def _open(table: Table, folder: Path, made: Made) -> Drawing | None:
 
 
 @lru_cache(maxsize=64)
-def cached_drawing(path: Path, units: str | None, snap: float, _stamp: tuple[int, int]) -> Drawing:
+def cached_drawing(path: Path, units: str | None, snap: float, section: float | None, _stamp: tuple[int, int]) -> Drawing:
     """Read once per version of the file: a parameter study loads the same scene thousands of times."""
     from watchsim.drawing.read import read
 
-    return read(path, units=units, snap=snap)
+    return read(path, units=units, snap=snap, section=section)
 
 
 def _similar(path: Path) -> str:
@@ -378,7 +379,9 @@ def _similar(path: Path) -> str:
 
 
 def _drawings(folder: Path) -> list[str]:
-    return sorted(file.name for file in folder.iterdir() if file.suffix.lower() in (".dxf", ".svg", ".svgz"))
+    from watchsim.drawing.read import ENDINGS
+
+    return sorted(file.name for file in folder.iterdir() if file.suffix.lower().lstrip(".") in ENDINGS)
 
 
 def _layers(table: Table, drawing: Drawing, sides: Mapping[str, Side], apart: frozenset[str]) -> tuple[str, ...]:
