@@ -30,7 +30,7 @@ HELP = "read a drawing: units, size, layers, loops, lines, arcs, faults"
 
 
 def options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", metavar="FILE", help="a DXF or SVG drawing, or a solid: STL, OBJ, GLB or 3MF")
+    parser.add_argument("file", metavar="FILE", help="a DXF or SVG drawing, or a solid: STL, OBJ, GLB, 3MF or STEP")
     parser.add_argument("--units", metavar="UNIT", help="read lengths in this unit (mm, inch, ...) whatever the file says")
     parser.add_argument("--layer", metavar="NAMES", help="only these layers, with commas between them")
     parser.add_argument("--snap", metavar="LENGTH", help='join ends that lie this close, such as "2 µm" (default 1 µm)')

@@ -82,20 +82,19 @@ def _whole(corners: Array, turns: Array, fit: float, rounding: float) -> _Circle
 def _along(points: Array, fit: float, rounding: float) -> Fitted:
     """The edges of an open row of points: from each corner on the longest arc, else the piece itself."""
     turns = np.concatenate(([0.0], _turns(points), [0.0]))
-    bad = (np.abs(turns) >= SHARPEST) | (turns == 0.0)
+    sides = np.where(np.abs(turns) < SHARPEST, np.sign(turns), 0.0)
+    ends = np.flatnonzero(np.append(np.diff(sides) != 0.0, True)) + 1  # here another side begins
     edges: list[Edge] = []
     count, deviation, k = 0, 0.0, 0
     while k < len(points) - 1:
-        limit = k + 1
-        while not bad[limit] and turns[limit] * turns[k + 1] > 0.0:
-            limit += 1
+        limit = k + 1 if sides[k + 1] == 0.0 else int(ends[np.searchsorted(ends, k + 1, side="right")])
         last, circle = _longest(points, k, limit, fit, rounding)
         if circle is None or (last - k < FEWEST and circle.sagitta > UNSEEN):
             edges.append(Line(*points[k].tolist(), *points[k + 1].tolist()))
             k += 1
             continue
         start, end = (math.atan2(y - circle.y, x - circle.x) for x, y in (points[k], points[last]))
-        side = math.copysign(1.0, turns[k + 1])
+        side = float(sides[k + 1])
         edges.append(Arc(circle.x, circle.y, circle.radius, start, side * (side * (end - start) % TURN)))
         count, deviation, k = count + 1, max(deviation, circle.off + circle.sagitta), last
     return Fitted(edges, count, deviation)

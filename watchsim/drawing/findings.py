@@ -7,9 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import NamedTuple
 
 from watchsim.geometry.primitives import Edge, Point
+from watchsim.geometry.sections import Slab
 from watchsim.units import LENGTH, UnitError, known_unit
 
 FOOT, SURVEY_FOOT = 0.3048, 1200.0 / 3937.0
@@ -106,23 +106,11 @@ class Inserted:
     last: int
 
 
-class Slab(NamedTuple):
-    """Of a solid: the heights (m) between two at which its section changes; `same` where it does not between them."""
-
-    bottom: float
-    top: float
-    same: bool
-
-    @property
-    def middle(self) -> float:
-        return 0.5 * (self.bottom + self.top)
-
-
 @dataclass(frozen=True)
 class Facts:
     """What is known of a drawing from its file alone. Lengths are metres, in the coordinates of the drawing.
 
-    format          "dxf", "svg", or of a solid "stl", "obj", "glb", "3mf"
+    format          "dxf", "svg", or of a solid "stl", "obj", "glb", "3mf", "step"
     units           as the file (or the caller) gave it; None where neither did: lengths are then what they would be in
                     millimetres, and a finding of severity "error" says so
     units_from      "header", "option" or "page"; None when unknown

@@ -23,9 +23,9 @@ from watchsim.units import metric
 
 FIT = 1e-7
 LARGEST_FILE = 75_000_000  # bytes; to take it apart needs thirteen times as much memory
-MESHES = ("stl", "obj", "glb", "3mf")
-ENDINGS = ("dxf", "svg", "svgz", *MESHES)
-OTHER_SOLIDS = ("step", "stp", "iges", "igs", "brep", "sldprt", "ipt", "f3d", "fcstd")
+SOLIDS = ("stl", "obj", "glb", "3mf", "step", "stp")
+ENDINGS = ("dxf", "svg", "svgz", *SOLIDS)
+OTHER_SOLIDS = ("iges", "igs", "brep", "sldprt", "ipt", "f3d", "fcstd")
 SMALLEST = 20.0  # times the snap: the smallest drawing that is believed
 LARGEST = 10.0  # m: the largest
 
@@ -35,7 +35,7 @@ def read(
 ) -> Drawing:
     """Reads a drawing. `units` overrules what the file says; `snap` and `fit` are in metres.
 
-    A solid (STL, OBJ, GLB, 3MF) is cut at the height `section`, metres along its z axis.
+    A solid (STL, OBJ, GLB, 3MF, STEP) is cut at the height `section`, metres along its z axis.
     Raises ValueError where `units` is not a unit of length, or `snap` or `fit` is not positive.
     """
     path = Path(path)
@@ -72,7 +72,7 @@ def assembled(path: Path, ending: str, reader: Callable[[], Content], snap: floa
 def unread_solid(name: str, ending: str) -> Finding:
     """The error for a solid of exact surfaces, or in a format of one program only."""
     message = f'"{name}" is a solid in the format {ending.upper()}, which is not read'
-    fix = "Export it as STL or 3MF with chords within 0.2 µm, from your CAD program or from FreeCAD, which opens STEP and IGES."
+    fix = "Export it as STL or 3MF with chords within 0.2 µm, or as STEP."
     return Finding("format", "error", message, fix)
 
 
@@ -96,7 +96,7 @@ def read_content(path: Path, ending: str, units: str | None, fit: float, section
         return Content(findings=(unread_solid(path.name, ending),))
     if ending not in ENDINGS:
         message = f'"{path.name}" ends in neither .dxf nor .svg: this kind of file is not read'
-        fix = "Save the drawing as DXF or SVG, a solid as STL, OBJ, GLB or 3MF."
+        fix = "Save the drawing as DXF or SVG, a solid as STL, OBJ, GLB, 3MF or STEP."
         return Content(findings=(Finding("format", "error", message, fix),))
     try:
         size = path.stat().st_size
@@ -113,7 +113,7 @@ def read_content(path: Path, ending: str, units: str | None, fit: float, section
 
 def content_of(data: bytes, ending: str, units: str | None, fit: float, section: float | None = None) -> Content:
     """What the reader for that ending and content finds in a file's bytes."""
-    if ending in MESHES:
+    if ending in SOLIDS:
         from watchsim.drawing.sections import read_solid
 
         return replace(read_solid(data, ending, units, fit, section), format=ending, data=data)

@@ -14,7 +14,7 @@ import math
 from collections.abc import Iterable, Mapping, MutableMapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any, NamedTuple, cast
+from typing import Any, cast
 
 import numpy as np
 import shapely
@@ -27,6 +27,7 @@ from trimesh.visual.material import PBRMaterial
 
 from watchsim.geometry.loops import Loop, chords, polyline
 from watchsim.geometry.primitives import TURN, Arc, Edge, Line, Point
+from watchsim.geometry.sections import Solid
 from watchsim.geometry.solids import pieces, region
 
 Array = NDArray[np.float64]
@@ -282,25 +283,21 @@ def _arc(points: Sequence[Point], closed: bool, number: int) -> Arc:
     return Arc(x, y, radius, start, side * sweep)
 
 
-class Solid(NamedTuple):
-    """A named mesh of a file: vertices (n, 3) in the file's unit, all different, and faces (m, 3), which have an area."""
-
-    name: str
-    vertices: Array
-    faces: NDArray[np.int64]
-
-
 UNNAMED = "0"
 LENGTHS = {"micron": "µm", "millimeter": "mm", "millimeters": "mm", "centimeter": "cm", "meter": "m", "foot": "ft"}  # of 3MF
+CHORD_TURN = 0.1  # rad between two chords of a STEP file's curve: an arc of a tenth of a turn still has six
 
 
-def solids_of(data: bytes, ending: str) -> tuple[list[Solid], str | None]:
-    """The meshes of an STL, OBJ, GLB or 3MF file, placed as its scene says, and its unit, where it has one.
+def solids_of(data: bytes, ending: str, chord: float) -> tuple[list[Solid], str | None]:
+    """The meshes of an STL, OBJ, GLB, 3MF or STEP file, placed as its scene says, and its unit, where it has one.
 
-    Whatever trimesh raises goes on: ImportError where it lacks a package for that format, anything else where the file is
-    damaged. Other files, such as textures, are not read.
+    Exact surfaces are replaced by chords that leave them by `chord` metres at most. Whatever trimesh raises goes on:
+    ImportError where it lacks a package for that format, anything else where the file is damaged. Other files, such as
+    textures, are not read.
     """
     more: dict[str, Any] = {"skip_materials": True} if ending == "obj" else {}
+    if exact := ending in ("step", "stp"):
+        more = {"tol_linear": MM * chord, "tol_angular": CHORD_TURN}
     loaded: Any = trimesh.load(io.BytesIO(data), file_type=ending, process=False, **more)
     scene = loaded if isinstance(loaded, trimesh.Scene) else trimesh.Scene(loaded)
     found = []
@@ -313,10 +310,10 @@ def solids_of(data: bytes, ending: str) -> tuple[list[Solid], str | None]:
         if not np.isfinite(points).all():
             raise ValueError("it has coordinates that are not finite")
         # Corners of neighbours are equal to the last bit; within a tolerance small parts in metres would melt.
-        vertices, number = np.unique(points, axis=0, return_inverse=True)
+        vertices, number = np.unique(MM * points if exact else points, axis=0, return_inverse=True)
         faces = number.reshape(-1)[np.asarray(mesh.faces)]
         sides = np.diff(vertices[faces], axis=1)
         faces = faces[np.any(np.cross(sides[:, 0], sides[:, 1]) != 0.0, axis=1)]
-        found.append(Solid(str(node) if ending in ("glb", "3mf") else UNNAMED, vertices, faces))
-    unit = "m" if ending == "glb" else scene.units if ending == "3mf" else None
+        found.append(Solid(UNNAMED if ending in ("stl", "obj") else str(node), vertices, faces))
+    unit = "m" if ending == "glb" else "mm" if exact else scene.units if ending == "3mf" else None
     return found, LENGTHS.get(str(unit), unit)

@@ -185,7 +185,7 @@ TEETH: Keys = {
     "towards": _angle("of the drawing, where the wobble is seen"),
 }
 BODY: Keys = {
-    "drawing": _text("DXF or SVG file, or a solid (STL, OBJ, GLB, 3MF), relative to the scene"),
+    "drawing": _text("DXF or SVG file, or a solid (STL, OBJ, GLB, 3MF, STEP), relative to the scene"),
     "layers": Key(doc="layers whose closed outlines can touch", form=TEXTS, absent="all but the pivot's"),
     "draw": Key(doc="layers that are drawn though they cannot touch", form=TEXTS, absent="all others"),
     "units": _text("unit of the drawing", absent="the file's"),
