@@ -102,7 +102,11 @@ def read_content(path: Path, ending: str, units: str | None, fit: float, section
         size = path.stat().st_size
         if size > LARGEST_FILE:
             message = f"the file has {size / 1e6:.0f} MB, more than the {LARGEST_FILE / 1e6:.0f} MB allowed for a drawing"
-            fix = "Save only the part: without pictures, hatches and meshes."
+            fix = (
+                "Export it with longer chords."
+                if ending in SOLIDS
+                else "Save only the part: without pictures, hatches and meshes."
+            )
             return Content(findings=(Finding("too-large", "error", f"{message}; it was not read", fix),))
         data = path.read_bytes()
     except OSError as error:

@@ -17,6 +17,7 @@ from watchsim.geometry.meshes import solids_of
 from watchsim.geometry.sections import Slab, outlines_at, slabs
 
 ROUNDING = float(np.finfo(np.float32).eps)  # of the coordinates: most files hold 32 bits
+ALIKE = 1e-8  # m: thicknesses this close are the same, and the lowest slab is proposed
 SHOWN = 12  # heights in a message
 
 
@@ -36,7 +37,7 @@ def read_solid(data: bytes, ending: str, units: str | None, fit: float, section:
         return _nothing("damaged", f"it cannot be read as {ending.upper()}: {reason}", "Export the solid again.")
     solids = [solid for solid in solids if len(solid.faces)]
     if not solids:
-        return _nothing("empty", "the file holds no triangle that has an area", "Export the solid, not its sketch.")
+        return _nothing("empty", "the file holds no triangle, or was cut short", "Export the solid again.")
     known = dict(UNITS)
     name, metres = stated or (own, known.get(own or "", 1e-3))
     findings = [_open_mesh(solid.name, solid.open_edges) for solid in solids if solid.open_edges]
@@ -85,7 +86,7 @@ def _open_mesh(layer: str, count: int) -> Finding:
 
 def _height(heights: Sequence[Slab], section: float | None, rounding: float) -> tuple[float, list[Finding]]:
     """Where to cut, and what is wrong with the height that was given, or that none was."""
-    best = max(heights, key=lambda slab: (slab.same, slab.top - slab.bottom)).middle
+    best = max(heights, key=lambda slab: (slab.same, round((slab.top - slab.bottom) / ALIKE))).middle
     levels = sorted({height for slab in heights for height in (slab.bottom, slab.top)})
     few = ", ".join(f"{1e3 * level:.6g}" for level in levels[:SHOWN]) + (", ..." if len(levels) > SHOWN else "") + " mm"
     fix = f'Set section = "{_mm(best)}".'

@@ -9,11 +9,17 @@ appendix C).
 from __future__ import annotations
 
 import functools
+import importlib.util
 import io
 import math
+import re
+import subprocess
+import sys
+import tempfile
 from collections.abc import Iterable, Mapping, MutableMapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from pathlib import Path
 from typing import Any, cast
 
 import numpy as np
@@ -297,7 +303,7 @@ def solids_of(data: bytes, ending: str, chord: float) -> tuple[list[Solid], str 
     """
     more: dict[str, Any] = {"skip_materials": True} if ending == "obj" else {}
     if exact := ending in ("step", "stp"):
-        more = {"tol_linear": MM * chord, "tol_angular": CHORD_TURN}
+        data, ending = _glb_of_step(data, chord), "glb"
     loaded: Any = trimesh.load(io.BytesIO(data), file_type=ending, process=False, **more)
     scene = loaded if isinstance(loaded, trimesh.Scene) else trimesh.Scene(loaded)
     found = []
@@ -312,8 +318,24 @@ def solids_of(data: bytes, ending: str, chord: float) -> tuple[list[Solid], str 
         # Corners of neighbours are equal to the last bit; within a tolerance small parts in metres would melt.
         vertices, number = np.unique(MM * points if exact else points, axis=0, return_inverse=True)
         faces = number.reshape(-1)[np.asarray(mesh.faces)]
-        sides = np.diff(vertices[faces], axis=1)
-        faces = faces[np.any(np.cross(sides[:, 0], sides[:, 1]) != 0.0, axis=1)]
-        found.append(Solid(UNNAMED if ending in ("stl", "obj") else str(node), vertices, faces))
-    unit = "m" if ending == "glb" else "mm" if exact else scene.units if ending == "3mf" else None
+        faces = faces[np.all(faces != np.roll(faces, 1, axis=1), axis=1)]  # without those that are a line or a point
+        parent = f"{scene.graph.transforms.parents.get(node)}."  # our own exports name a layer BODY.LAYER
+        found.append(Solid(UNNAMED if ending in ("stl", "obj") else str(node).removeprefix(parent), vertices, faces))
+    unit = "mm" if exact else "m" if ending == "glb" else scene.units if ending == "3mf" else None
     return found, LENGTHS.get(str(unit), unit)
+
+
+def _glb_of_step(data: bytes, chord: float) -> bytes:
+    """By a process of its own: OpenCASCADE writes to stdout, and a damaged file may be the end of it."""
+    if importlib.util.find_spec("cascadio") is None:
+        raise ImportError("No module named 'cascadio'")
+    code = "import cascadio, sys; cascadio.step_to_glb(*sys.argv[1:3], *map(float, sys.argv[3:]))"
+    with tempfile.TemporaryDirectory() as folder:
+        source, made = Path(folder, "solid.step"), Path(folder, "solid.glb")
+        source.write_bytes(data)
+        command = [sys.executable, "-c", code, str(source), str(made), repr(MM * chord), repr(CHORD_TURN)]
+        done = subprocess.run(command, capture_output=True, check=False, text=True, errors="replace")
+        if not made.is_file():
+            found = re.search(r"Line \d+: [^*\n]+", done.stdout + done.stderr)
+            raise ValueError(found[0].strip() if found else "OpenCASCADE finds no solid in it")
+        return made.read_bytes()
