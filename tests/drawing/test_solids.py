@@ -265,3 +265,11 @@ def test_a_scene_says_where_a_solid_is_cut(line: str, words: str, tmp_path: Path
 def test_a_flat_drawing_has_no_section(capsys: pytest.CaptureFixture[str]) -> None:
     status, report = inspected(capsys, str(PROFILES / "swiss_lever" / "lever.dxf"), "--section", "0.1 mm")
     assert status == 2 and "is flat" in report["findings"][0]["message"]
+
+
+def test_new_cuts_a_solid_where_it_is_the_same_and_says_so(tmp_path: Path) -> None:
+    assert main(["new", str(stepped(tmp_path)), "-o", str(tmp_path / "scene")]) == 0
+    text = (tmp_path / "scene" / "scene.toml").read_text(encoding="utf-8")
+    assert 'section = "0.35 mm"  # guess:' in text and 'units = "mm"  # guess:' in text
+    (body,) = ws.load(tmp_path / "scene").bodies
+    assert [edge.length for loop in body.loops for edge in loop.edges] == [pytest.approx(6.283185307e-3, rel=1e-6)]

@@ -50,15 +50,20 @@ def inspect_report(drawing: Drawing) -> dict[str, object]:
         },
         "drawn": {"kinds": dict(drawing.drawn.kinds), "length_mm": 1e3 * drawing.drawn.length},
         "ignored": dict(drawing.ignored),
-        "section_mm": None if drawing.section is None else 1e3 * drawing.section,
-        "slabs": [{"from_mm": 1e3 * one.bottom, "to_mm": 1e3 * one.top, "same": one.same} for one in drawing.slabs],
         "findings": [finding.as_dict() for finding in drawing.findings],
         "lines": lines,
         "arcs": arcs,
         "length_mm": 1e3 * total_length(everything),
         "area_mm2": 1e6 * material_area(drawing.loops),
         "circles": circle_reports(drawing.loops),
+        **(_section_report(drawing) if drawing.slabs else {}),
     }
+
+
+def _section_report(drawing: Drawing) -> dict[str, object]:
+    """Of a solid: where it is cut, and between which heights its section stays the same."""
+    slabs = [{"from_mm": 1e3 * one.bottom, "to_mm": 1e3 * one.top, "same": one.same} for one in drawing.slabs]
+    return {"section_mm": 1e3 * (drawing.section or 0.0), "slabs": slabs}
 
 
 def counts(loops: Iterable[Loop]) -> tuple[int, int]:
@@ -129,15 +134,15 @@ def units_lines(drawing: Drawing) -> list[str]:
 
 
 def section_lines(drawing: Drawing) -> list[str]:
-    """Of a solid: where it is cut, and between which heights its section stays the same."""
+    """The same for people."""
     if drawing.section is None:
         return []
-    rows = [f"{1e3 * one.bottom:.6g} to {1e3 * one.top:.6g} mm" for one in drawing.slabs[:SHOWN]]
-    said = [
-        row + (", the same all the way" if one.same else ", changes") for row, one in zip(rows, drawing.slabs, strict=False)
+    rows = [
+        f"    {1e3 * one.bottom:.6g} to {1e3 * one.top:.6g} mm, {'the same all the way' if one.same else 'changes'}"
+        for one in drawing.slabs[:SHOWN]
     ]
     more = [f"    and {len(drawing.slabs) - SHOWN} more"] if len(drawing.slabs) > SHOWN else []
-    return [f"  cut at {1e3 * drawing.section:.6g} mm; its sections by height:", *(f"    {row}" for row in said), *more]
+    return [f"  cut at {1e3 * drawing.section:.6g} mm; its sections by height:", *rows, *more]
 
 
 def size_lines(drawing: Drawing, box: Box | None) -> list[str]:

@@ -45,13 +45,15 @@ class Mark:
 
 @dataclass(frozen=True)
 class Source:
-    """One drawing. `units` is a guess where the file does not say; `blocks` names inserted blocks, by prefix of the layer."""
+    """One drawing. `units` and `section` (m) are guesses where the file does not say; `blocks` names inserted blocks, by prefix
+    of the layer."""
 
     path: Path
     drawing: Drawing
     units: str | None
     blocks: dict[str, str]
     marks: tuple[Mark, ...]
+    section: float | None = None
     mended: tuple[str, ...] = ()  # what was closed so that its layer can be used
 
     @property
@@ -77,11 +79,14 @@ def read_source(path: Path) -> Source:
     if content.strokes and content.units is None:
         units = _likely_unit(content)
         content = read_content(path, ending, units, FIT)
+    section = content.section if any(finding.code == "section-missing" for finding in content.findings) else None
+    if section is not None:
+        content = read_content(path, ending, units, FIT, section)
     blocks: dict[str, str] = {}
     if len(content.inserted) > 1:
         content, blocks = _by_blocks(content)
     drawing, mended = _mended(assembled(path, ending, lambda: content, SNAP))
-    return Source(path, drawing, units, blocks, tuple(_marks(drawing)), tuple(mended))
+    return Source(path, drawing, units, blocks, tuple(_marks(drawing)), section, tuple(mended))
 
 
 OPEN = "open-outline"  # the code of a finding
@@ -133,8 +138,8 @@ def _chain_at(drawing: Drawing, finding: Finding) -> Loop | None:
 
 
 def _likely_unit(content: Content) -> str:
-    ends = [end for stroke in content.strokes for end in (stroke.edge.start, stroke.edge.end)]
-    across = max(max(column) - min(column) for column in zip(*ends, strict=True))
+    points = [stroke.edge.point(share) for stroke in content.strokes for share in (0.0, 0.25, 0.5, 0.75, 1.0)]
+    across = max(max(column) - min(column) for column in zip(*points, strict=True))
     return "mm" if LIKELY[0] <= across <= LIKELY[1] else "inch"
 
 

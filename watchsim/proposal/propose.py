@@ -120,6 +120,9 @@ def _body(plan: Plan, role: Role) -> Iterator[str]:
     yield f"drawing = {_text(drawing.name)}"
     if source.units is not None and not drawing.is_sorted:
         yield plan.guess(f"{key}.units", _text(source.units), "the drawing does not say; in this unit its size is likely")
+    if source.section is not None and not drawing.is_sorted:
+        height = _text(f"{1e3 * source.section:.6g} mm")
+        yield plan.guess(f"{key}.section", height, "the section changes with the height; inspect lists where")
     touching = _touching(plan, role)
     layers = [drawing.layers[role.name, layer] for layer in role.part.layers]
     yield f"layers = {_texts([layer for layer in layers if layer in touching] or layers)}"
@@ -338,6 +341,6 @@ def _overlapping(files: dict[str, bytes]) -> set[int]:
         try:
             scene: Scene = load(Path(folder) / SCENE)
         except SceneError as error:
-            faults = "\n".join(f"{fault.key}: {fault.message}" for fault in error.faults)
+            faults = "\n".join(f"{fault.key}: {fault.message.rstrip('.')}" for fault in error.faults)
             raise NothingToPropose(f"the outlines cannot be used as they are drawn\n{faults}") from error
         return {met.contact for met in overlaps(scene)} if scene.contacts else set()
