@@ -112,7 +112,7 @@ class Desk:
         monkeypatch.setattr(body_outlines, "cached_drawing", self._read)
         self.put(wheel_drawing())
 
-    def _read(self, path, units, snap, _stamp):
+    def _read(self, path, units, snap, _section, _stamp):
         self.asked.append((path.name, units, snap))
         return self.drawings[path.name]
 
