@@ -303,6 +303,13 @@ PLOTS = (
         "",
     ),
     Exhibit(
+        "sound.png",
+        "Sound",
+        "What a microphone would hear of the last two beats, each noise named by what met what. 1 is the loudest; the tones of the case are typical, not computed.",
+        "watchsim plot swiss --kind sound -o sound.png",
+        "",
+    ),
+    Exhibit(
         "timing.png",
         "Amplitude, rate and beat error",
         "Of every half swing of whatever swings, heard or not.",
@@ -321,7 +328,7 @@ HEAD = f"""# Plots
 
 `watchsim plot RUN --kind NAME` draws what is shown here, several kinds with commas, `--kind all` every one that the run has. Files are PNG,
 SVG or PDF (`--format svg,pdf`, or the ending of `-o`). In Python each is a function that returns a matplotlib figure:
-`ws.plot_kinematics`, `plot_phases`, `plot_timeline`, `plot_torque`, `plot_forces`, `plot_phase_portrait`, `plot_energy`, `plot_timing`, `plot_tape`; of studies
+`ws.plot_kinematics`, `plot_phases`, `plot_timeline`, `plot_torque`, `plot_forces`, `plot_phase_portrait`, `plot_energy`, `plot_sound`, `plot_timing`, `plot_tape`; of studies
 `plot_sweep` and `plot_sensitivity` ([studies](studies.md)). A notebook shows a figure that stands on the last line of a cell.
 
 A figure is as wide as it will be printed: 170 mm for a page, `--width "85 mm"` (`width=85`) for a column, letters of 6 pt or more in both. Colours can

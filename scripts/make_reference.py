@@ -84,6 +84,7 @@ PAGES = {
         "Plots, movies, sound and pages",
         [
             *("plot_kinematics", "plot_phases", "plot_timeline", "plot_torque", "plot_phase_portrait", "plot_forces"),
+            "plot_sound",
             *("plot_energy", "plot_timing", "plot_tape", "plot_sweep", "plot_comparison", "plot_sensitivity", "plot_tolerance"),
             *("plot_front", "plot_fit", "plot_positions"),
             *("movie", "frame", "card", "show", "sound", "report", "listen", "watchsim.analysis.listen:Heard"),

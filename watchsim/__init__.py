@@ -55,6 +55,7 @@ _HOMES = {
     "plot_phase_portrait": "watchsim.render.kinematics_plot",
     "plot_torque": "watchsim.render.energy_plot",
     "plot_forces": "watchsim.render.force_plot",
+    "plot_sound": "watchsim.render.sound_plot",
     "plot_positions": "watchsim.render.positions_plot",
     "plot_fit": "watchsim.render.study_plot",
     "plot_front": "watchsim.render.study_plot",
@@ -102,6 +103,7 @@ if TYPE_CHECKING:
     from watchsim.render.phase_plots import plot_phases as plot_phases
     from watchsim.render.phase_plots import plot_timeline as plot_timeline
     from watchsim.render.positions_plot import plot_positions as plot_positions
+    from watchsim.render.sound_plot import plot_sound as plot_sound
     from watchsim.render.study_plot import plot_fit as plot_fit
     from watchsim.render.study_plot import plot_front as plot_front
     from watchsim.render.study_plot import plot_sensitivity as plot_sensitivity

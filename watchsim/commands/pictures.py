@@ -59,6 +59,7 @@ KINDS = {  # kind -> what `watchsim.plot_KIND` takes besides the run
     "torque": ("window", "width", "beats"),
     "forces": ("window", "width"),
     "energy": ("window", "width", "beats"),
+    "sound": ("window", "width"),
     "timing": ("window", "width"),
     "tape": ("window", "width"),
 }

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from watchsim.analysis.flows import pair_layers
 from watchsim.analysis.forces import Forces, forces, just_before
 from watchsim.analysis.phases import Phase
 from watchsim.analysis.timegrapher import noises
@@ -339,9 +340,9 @@ def _one(run: Trajectory, event: Any, names: list[str]) -> str:
     kind = EventKind(int(event["kind"]))
     if event["contact"] < 0:
         return f"{names[event['body']]}: {WORDS[kind]}" if event["body"] >= 0 else WORDS[kind]
-    pair = run.pairs[int(event["contact"])]
+    met = " / ".join(pair_layers(run, int(event["contact"])))
     lost = f", {metric(float(event['energy_lost']), 'J', 2)} lost" if kind == EventKind.IMPACT else ""
-    return f"{pair.body_a} {pair.layer_a} / {pair.body_b} {pair.layer_b}: {WORDS[kind]}{lost}"
+    return f"{met}: {WORDS[kind]}{lost}"
 
 
 def heard(run: Trajectory, window: Window) -> dict[str, str]:

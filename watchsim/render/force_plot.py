@@ -108,7 +108,7 @@ def plot_forces(run: Trajectory, window: Sequence[float] | None = None, width: f
     instants to look at.
     """
     cycle = style.shown(run, window)
-    spans = [cycle.window] if window is not None else _spans(run, cycle)
+    spans = [cycle.window] if window is not None else beat_spans(run, cycle)
     found = curves(run, spans)
     pairs = list(dict.fromkeys(name for one in found for name in one.normal))
     pivots = list(dict.fromkeys(name for one in found for name in one.pivots))
@@ -159,7 +159,7 @@ def left_out(scene: Scene) -> str:
     return f", without {' and '.join(unknown)}" if unknown else ""
 
 
-def _spans(run: Trajectory, cycle: style.Shown) -> list[Window]:
+def beat_spans(run: Trajectory, cycle: style.Shown) -> list[Window]:
     """The beats of a cycle where they are whole, without their free oscillation; or the cycle."""
     found = []
     for beat in (beat for beat in cycle.phases if beat[0].name in BEGINNING):

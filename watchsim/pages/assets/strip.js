@@ -26,7 +26,7 @@ class Strip {
     const { t: times, loud } = this.sound;
     let sum = 0;
     for (let i = upTo(times, t) - 1; i >= 0 && t - times[i] < RUNG_OUT; i--) {
-      for (const [hertz, decay, share] of TONES) sum += loud[i] * share * Math.exp((times[i] - t) / decay) * (waves ? Math.sin(2 * Math.PI * hertz * (t - times[i])) : 1);
+      for (const [hertz, decay, share] of TONES) sum += loud[i] * share * Math.exp((times[i] - t) / decay) * (waves ? Math.cos(2 * Math.PI * hertz * (t - times[i])) : 1);
     }
     return sum;
   }
