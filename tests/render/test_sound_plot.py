@@ -12,7 +12,6 @@ from render.fake_runs import watch_run
 import watchsim as ws
 from watchsim.simulation.state import EventKind
 
-
 STEP = 2e-3  # s
 
 
