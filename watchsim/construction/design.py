@@ -25,7 +25,7 @@ from pathlib import Path
 from typing import Any
 
 from watchsim.drawing.drawing import SNAP, Drawing
-from watchsim.drawing.read import read_data
+from watchsim.drawing.read import read_sheet
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
 
@@ -80,11 +80,11 @@ def sheets_of(**parts: Iterable[Loop]) -> dict[str, Sheet]:
 
 @lru_cache(maxsize=256)
 def drawing_of(sheet: Sheet, name: str, snap: float = SNAP) -> Drawing:
-    """The drawing of a sheet, by way of its DXF: what is simulated is then what a file of it holds, to the last bit.
+    """The drawing of a sheet, as its DXF file would be read: what is simulated is what a file of it holds, to the last bit.
 
     Made once per sheet: of a design of which one dimension changes, most sheets stay as they are.
     """
-    return read_data(sheet.dxf(), Path(name), snap=snap)
+    return read_sheet(sheet, Path(name), snap)
 
 
 def unsound(sheet: Sheet, name: str) -> Iterator[str]:

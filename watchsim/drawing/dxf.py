@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import zip_longest
 
 from watchsim.drawing.curves import follow
@@ -49,7 +49,8 @@ from watchsim.drawing.projection import (
     unit,
 )
 from watchsim.drawing.splines import spline_from
-from watchsim.geometry.primitives import TURN
+from watchsim.drawing.write import Sheet, degrees_of
+from watchsim.geometry.primitives import TURN, Line
 
 # Each reader of an entity takes a record and gives shapes in world coordinates and drawing units. Group codes after the DXF
 # reference (Autodesk); missing or doubled coordinates raise DxfError instead of becoming zero.
@@ -320,6 +321,26 @@ def read_dxf(data: bytes, units: str | None, fit: float) -> Content:
         return Content(units=name, units_from=origin, findings=(*notes, *sections.findings, refusal))
     findings = (*notes, *sections.findings, *found.findings, *left_out(found, sections.layers))
     return found.content(name, origin, findings)
+
+
+def content_of_sheet(sheet: Sheet, fit: float) -> Content:
+    """What `read_dxf` would find in the sheet's own DXF file, to the last bit, without the detour."""
+    found = Gathering(INSUNITS[4][1], fit)
+    if sheet.pivot is not None:
+        emit(found, Dot((*sheet.pivot, 0.0)), "PIVOT", "POINT")
+    for loop in sheet.loops:
+        for edge in loop.edges:
+            found.runs += 1
+            if isinstance(edge, Line):
+                emit(found, Straight((edge.x0, edge.y0, 0.0), (edge.x1, edge.y1, 0.0)), loop.layer, "LINE")
+            elif edge.is_circle:
+                emit(found, circle((edge.x, edge.y, 0.0), edge.radius), loop.layer, "CIRCLE")
+            else:
+                start, end = degrees_of(edge)
+                sweep = (end - start) % 360.0 or 360.0
+                whole = circle((edge.x, edge.y, 0.0), edge.radius, math.radians(start), math.radians(sweep))
+                emit(found, whole, loop.layer, "ARC")
+    return replace(found.content(INSUNITS[4][0], "header", found.findings), format="dxf")
 
 
 def _unit_of(code: int, stated: tuple[str, float] | None) -> tuple[str | None, float, str | None, list[Finding]]:

@@ -16,8 +16,9 @@ from pathlib import Path
 from watchsim.drawing.chaining import chain
 from watchsim.drawing.circles import facets
 from watchsim.drawing.drawing import SNAP, Drawing
-from watchsim.drawing.dxf import read_dxf
+from watchsim.drawing.dxf import content_of_sheet, read_dxf
 from watchsim.drawing.findings import Content, Facts, Finding
+from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop, extents
 from watchsim.units import metric
 
@@ -49,6 +50,11 @@ def read_data(data: bytes, path: Path, units: str | None = None, snap: float = S
     """The same of a file that is in memory; `path` is its name."""
     ending = path.suffix.lower().lstrip(".")
     return assembled(path, ending, lambda: content_of(data, ending, units, fit), snap)
+
+
+def read_sheet(sheet: Sheet, path: Path, snap: float = SNAP) -> Drawing:
+    """What `read_data` gives of the sheet's DXF file, to the last bit; entities are named without handles."""
+    return assembled(path, "dxf", lambda: content_of_sheet(sheet, FIT), snap)
 
 
 def assembled(path: Path, ending: str, reader: Callable[[], Content], snap: float) -> Drawing:

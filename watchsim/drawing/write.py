@@ -123,9 +123,13 @@ def _add_edge(space: Modelspace, edge: Edge, attributes: dict[str, str], scale: 
     if edge.is_circle:
         space.add_circle(centre, scale * edge.radius, dxfattribs=attributes)
         return
-    arc = edge if edge.sweep > 0.0 else edge.reversed()  # a DXF arc runs counter-clockwise
-    start = math.degrees(arc.start_angle) % 360.0
-    space.add_arc(centre, scale * arc.radius, start, start + math.degrees(arc.sweep), dxfattribs=attributes)
+    space.add_arc(centre, scale * edge.radius, *degrees_of(edge), dxfattribs=attributes)
+
+
+def degrees_of(arc: Arc) -> tuple[float, float]:
+    """Where an arc begins and ends in a DXF file, in which arcs run counter-clockwise."""
+    start = math.degrees((arc if arc.sweep > 0.0 else arc.reversed()).start_angle) % 360.0
+    return start, start + math.degrees(abs(arc.sweep))
 
 
 # SVG: a page in real millimetres whose user unit is the millimetre, y turned down as SVG has it; one Inkscape layer per layer,
@@ -234,6 +238,23 @@ class Sheet:
         stream = io.StringIO()
         document.write(stream)
         return stream.getvalue().encode(document.output_encoding, "dxfreplace")
+
+
+class Files(Mapping[str, bytes]):
+    """The files of drawings by name; that of a design's sheet is made when somebody wants it."""
+
+    def __init__(self, files: Mapping[str, bytes | Sheet]) -> None:
+        self._files = dict(files)
+
+    def __getitem__(self, name: str) -> bytes:
+        found = self._files[name]
+        return found.dxf() if isinstance(found, Sheet) else found
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._files)
+
+    def __len__(self) -> int:
+        return len(self._files)
 
 
 def new_sheet(layers: tuple[str, ...], pivot: Point | None = (0.0, 0.0)) -> Drawing:

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.contact.gaps import poses
-from watchsim.escapement.turning import describe, turn_to_touch
+from watchsim.escapement.turning import describe, turn_to_touch, turns_to_touch
 from watchsim.geometry.primitives import Point
 from watchsim.mechanism.compile import Compiled
 from watchsim.scene.roles import drive_direction, partners, roles
@@ -154,6 +154,7 @@ class Hands:
         self._pose, self._row = poses(len(self.model.bodies)), np.zeros(5)
         self._pairs = np.column_stack((self.model.contacts.a, self.model.contacts.b))
         self._owner = np.array(self.model.primitives.body)
+        self._bodies: list[int] = self.model.coordinates.body.tolist()
 
     def coordinate(self, name: str) -> int:
         return self.compiled.slices[name].start
@@ -163,9 +164,15 @@ class Hands:
     ) -> Touch | None:
         """Where body `name` first touches, turned from q in direction `sense` by -`behind` to `reach` rad; None: nowhere."""
         i = self.coordinate(name)
-        body = int(self.model.coordinates.body[i])
-        turn, contact = turn_to_touch(self.model, ids, q, body, sense, (-behind, reach), self.room, self._pose)
+        turn, contact = turn_to_touch(self.model, ids, q, self._bodies[i], sense, (-behind, reach), self.room, self._pose)
         return Touch(float(q[i]) + sense * turn, int(contact)) if contact >= 0 else None
+
+    def turns(self, name: str, ids: Integers, q: Array, sense: float, reach: float, moved: int, angles: list[float]) -> Array:
+        """How far body `name` can be turned from q until it touches, rad, with coordinate `moved` at each of the angles."""
+        found, body = np.empty(len(angles)), self._bodies[self.coordinate(name)]
+        span, at = (0.0, reach), np.array(angles, dtype=float)
+        turns_to_touch(self.model, ids, q.copy(), moved, at, body, sense, span, self.room, self._pose, found)
+        return found
 
     def meeting(self, contact: int, q: Array) -> Meeting:
         describe(self.model, contact, q, self._pose, self._row)
@@ -189,7 +196,7 @@ class Hands:
 
     def body(self, name: str) -> int:
         """The number in the model of a pivoted body."""
-        return int(self.model.coordinates.body[self.coordinate(name)])
+        return self._bodies[self.coordinate(name)]
 
     def pivot(self, name: str, q: Array) -> Point:
         """Where a body's origin is (m)."""

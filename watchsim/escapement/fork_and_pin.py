@@ -180,6 +180,13 @@ class Balance:
         ids = self.parts.to_balance if ids is None else ids
         return self.hands.touch(self.parts.lever, ids, self.at(start, balance), sense, FARTHEST)
 
+    def freedoms(self, start: float, balances: list[float], sense: float, ids: Integers) -> list[float]:
+        """How far the lever can be turned from `start` with the balance at each of the angles, rad; infinite: nothing stops it."""
+        q = self.at(start, 0.0)
+        # As the difference of two angles, each of which is rounded, that a single `lever` gives.
+        turns = self.hands.turns(self.parts.lever, ids, q, sense, FARTHEST, self._balance, balances)
+        return np.abs((start + sense * turns) - start).tolist()
+
     def rates(self, touch: Touch, lever: float) -> tuple[float, float]:
         """How fast the gap opens as lever and balance turn, m/rad."""
         met = self.hands.meeting(touch.contact, self.at(lever, touch.angle))
@@ -371,21 +378,19 @@ def safety(balance: Balance, bank: float, side: float, entry: Entry) -> Safety |
     own = int(hands.model.contacts.group[stop.contact])
     guarding, horns = balance.parts.to_balance[groups == own], balance.parts.to_balance[groups != own]
 
-    def freedom(theta: float, ids: Integers) -> float:
-        touch = balance.lever(bank, theta, -side, ids)
-        return math.inf if touch is None else abs(touch.angle - bank)
+    def freedoms(angles: list[float], ids: Integers) -> list[float]:
+        return balance.freedoms(bank, angles, -side, ids)
 
     everything = balance.parts.to_balance
     guard = abs(stop.angle - bank)
     places = _outside(entry, far)
-    free = [freedom(theta, everything) for theta in places]
-    at, worst = _peak(lambda theta: freedom(theta, everything), places, free)
-    dart = [freedom(theta, guarding) for theta in places]
+    at, worst = _peak(lambda angles: freedoms(angles, everything), places)
+    dart = freedoms(places, guarding)
     facing = [i for i, value in enumerate(dart) if value > FACES_CRESCENT * guard]
     horn = math.nan
     if facing and len(horns):
         chosen = [places[i] for i in facing]
-        _, horn = _peak(lambda theta: freedom(theta, horns), chosen, [freedom(theta, horns) for theta in chosen])
+        _, horn = _peak(lambda angles: freedoms(angles, horns), chosen)
     met = hands.meeting(stop.contact, balance.at(stop.angle, far))
     rate = met.rates[hands.body(balance.parts.lever)]
     error = hands.error(rate)
@@ -406,8 +411,9 @@ def _outside(entry: Entry, far: float) -> list[float]:
     return [entry.angle - entry.way * (i * SCAN + FINE) for i in range(count)]
 
 
-def _peak(function: Callable[[float], float], places: list[float], values: list[float]) -> tuple[float, float]:
+def _peak(function: Callable[[list[float]], list[float]], places: list[float]) -> tuple[float, float]:
     """Place and height of the largest value, by golden section between the neighbours of the highest place."""
+    values = function(places)
     i = max(range(len(values)), key=values.__getitem__)
     if not math.isfinite(values[i]):
         return places[i], values[i]
@@ -415,7 +421,7 @@ def _peak(function: Callable[[float], float], places: list[float], values: list[
     best = (places[i], values[i])
     while abs(high - low) > FINE:
         one, two = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
-        first, second = function(one), function(two)
+        first, second = function([one, two])
         best = max(best, (one, first), (two, second), key=lambda pair: pair[1])
         low, high = (low, two) if first > second else (one, high)
     return best

@@ -54,14 +54,8 @@ def _margin_and_rate(primitives, contact, pose, turned):
     return min(inside_a, inside_b), rate if a.body == turned else -rate
 
 
-@entry
-def turn_to_touch(model, ids, q, turned, sense, span, room, out_pose):
-    """(turn, contact): the least turn of body `turned` in direction `sense` (±1) at which one of the contacts `ids` closes.
-
-    The body stands at coordinates q; turns from span[0] to span[1] (rad, less than a whole turn) are looked at, all others are
-    held. (span[1], -1) where it stays free. A contact counts up to `room` (m) beyond the ends of its primitives.
-    `out_pose` is scratch: one row per body.
-    """
+@kernel
+def _turn_to_touch(model, ids, q, turned, sense, span, room, out_pose):
     place(model, q, q, out_pose)
     own = out_pose[turned]
     c, s = own.c, own.s
@@ -84,6 +78,29 @@ def turn_to_touch(model, ids, q, turned, sense, span, room, out_pose):
             if margin >= -room and sense * rate < -room:
                 best, found = turn, k
     return best, found
+
+
+@entry
+def turn_to_touch(model, ids, q, turned, sense, span, room, out_pose):
+    """(turn, contact): the least turn of body `turned` in direction `sense` (±1) at which one of the contacts `ids` closes.
+
+    The body stands at coordinates q; turns from span[0] to span[1] (rad, less than a whole turn) are looked at, all others are
+    held. (span[1], -1) where it stays free. A contact counts up to `room` (m) beyond the ends of its primitives.
+    `out_pose` is scratch: one row per body.
+    """
+    return _turn_to_touch(model, ids, q, turned, sense, span, room, out_pose)
+
+
+@entry
+def turns_to_touch(model, ids, q, moved, angles, turned, sense, span, room, out_pose, out_turns):
+    """The same with coordinate `moved` at each of `angles` in turn: fills `out_turns`, infinite where the body stays free.
+
+    q is scratch: its coordinate `moved` stands at the last of the angles afterwards.
+    """
+    for i in range(len(angles)):
+        q[moved] = angles[i]
+        turn, found = _turn_to_touch(model, ids, q, turned, sense, span, room, out_pose)
+        out_turns[i] = turn if found >= 0 else math.inf
 
 
 @entry

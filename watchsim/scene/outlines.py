@@ -251,7 +251,7 @@ class Outlines:
     `loops` can touch, `rest` are closed outlines on layers left out, `aside` those that solids use as sections and
     hairsprings, `bores` those that solids take out and nothing fills, `chains` the open lines. `pivot` is None when nobody said
     where it is. `errors` are what is wrong on layers left out. `drawn` is what the scene asks to draw besides, None where it
-    does not say. `data` is the drawing file, None without one.
+    does not say. `data` is the drawing file, or a design's sheet that it is made of; None without one.
     `sound` is False after a fault: questions about layers are then not worth asking.
     """
 
@@ -264,7 +264,7 @@ class Outlines:
     bores: tuple[Loop, ...] = ()
     chains: tuple[Loop, ...] = ()
     errors: tuple[Finding, ...] = ()
-    data: bytes | None = None
+    data: bytes | Sheet | None = None
     drawn: tuple[Loop, ...] | None = None
 
     @property
@@ -312,7 +312,7 @@ def _from_drawing(table: Table, folder: Path, made: Made) -> Outlines:
         bores=tuple(loop for loop in closed if loop.layer in drilled - apart),
         chains=drawing.open_chains,
         errors=tuple(f for f in drawing.findings if f.severity == "error" and f.layer in apart and f.layer not in layers),
-        data=drawing.data,
+        data=made.get(table.text("drawing"), drawing.data),
     )
 
 
