@@ -95,8 +95,8 @@ def taken_back_from(model: Model, q: Array, options: Options, near: float) -> Ar
 def directions(closed: Closed, sparse: Array, n: int) -> Array:
     """(contacts, n): w_N or w_T of all contacts over the coordinates."""
     out = np.zeros((len(closed.ids), n))
-    for row, slots in enumerate(closed.slots):
-        np.add.at(out[row], closed.coord[row, :slots], sparse[row, :slots])
+    rows, slots = np.nonzero(np.arange(closed.coord.shape[1]) < np.asarray(closed.slots)[:, None])
+    np.add.at(out, (rows, closed.coord[rows, slots]), sparse[rows, slots])
     return out
 
 
