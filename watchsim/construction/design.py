@@ -121,6 +121,11 @@ def no_conflicts(_values: Values) -> tuple[Conflict, ...]:
     return ()
 
 
+@lru_cache(maxsize=4)
+def _sheets(design: Design, values: Values) -> dict[str, Sheet]:
+    return {f"{design.name}/{file}.dxf": sheet for file, sheet in design.draw(values).items()}
+
+
 @dataclass(frozen=True)
 class Design:
     """A mechanism with dimensions. `draw` gives the sheets by file name (without ".dxf"), `scene` the text of scene.toml."""
@@ -163,7 +168,7 @@ class Design:
 
     def sheets(self, values: Values) -> dict[str, Sheet]:
         """The sheets by the names that drawings have in a scene made from the design, such as "swiss_lever/lever.dxf"."""
-        return {f"{self.name}/{file}.dxf": sheet for file, sheet in self.draw(values).items()}
+        return _sheets(self, values)
 
     def chosen(self, chosen: Mapping[str, float]) -> Values:
         """The values with these numbers in place of the defaults."""

@@ -384,21 +384,30 @@ class PairSearch:
         if len(used) == 0:
             return np.zeros(0, np.int64), np.zeros(0, np.int64)
         points, distance = self._seen(at, room, used)
-        first, cells = _firsts(self._drawn, used), len(at)
+        first = _firsts(self._drawn, used)
         within = (distance[:, row] + self._still_sag[other]) * (1.0 + PLANE_ROUNDING)
-        # Most are far apart, which circles around them show sooner.
+        # Most are far apart, which circles around them show sooner; of the rest most cannot touch with their insides.
         cell, place = np.nonzero(self._circles_near(points, first, row, other, within))
-        every = np.append((first[:-1] + points.shape[1] * np.arange(cells)[:, None]).ravel(), points.shape[0] * points.shape[1])
-        shapes = _shapes(points.reshape(-1, 2), every).reshape(cells, len(used))
-        near = shapely.dwithin(self._still[other[place]], shapes[cell, row[place]], within[cell, place])
-        cell, place = cell[near], place[near]
         wanted = mover[place] * self._others + other[place]
         left = np.searchsorted(self._wanted, wanted, side="left")
         several = np.searchsorted(self._wanted, wanted, side="right") - left
         nth = np.arange(several.sum()) - np.repeat(np.cumsum(several) - several, several)
-        cell, local = np.repeat(cell, several), self._local[np.repeat(left, several) + nth]
+        cell, place, local = np.repeat(cell, several), np.repeat(place, several), self._local[np.repeat(left, several) + nth]
         possible = self._regions.possible(cell, local, at, room)
-        return cell[possible], local[possible]
+        cell, place, local = cell[possible], place[possible], local[possible]
+        shapes = self._shapes_at(points, first, cell, row[place])
+        near = shapely.dwithin(self._still[other[place]], shapes, within[cell, place])
+        return cell[near], local[near]
+
+    def _shapes_at(self, points: Array, first: Integers, place: Integers, row: Integers) -> Any:
+        """The movers `row` at the places `place` of `points` (places, points, 2), each made once."""
+        movers = len(first) - 1
+        wanted, again = np.unique(place * movers + row, return_inverse=True)
+        where, which = wanted // movers, wanted % movers
+        count = np.diff(first)[which]
+        ends = np.append(0, np.cumsum(count))
+        each = np.arange(ends[-1]) + np.repeat(first[which] - ends[:-1], count)
+        return _shapes(points[np.repeat(where, count), each], ends)[again]
 
     def _circles_near(self, points: Array, first: Integers, row: Integers, other: Integers, within: Array) -> NDArray[np.bool_]:
         """(places, pairs): come the circles around mover `row` and still primitive `other` as near as `within`?"""

@@ -153,7 +153,8 @@ class Hands:
         self.resolution = JOINT_RESOLUTION * compiled.size  # m: what outlines leave open
         self._pose, self._row = poses(len(self.model.bodies)), np.zeros(5)
         self._pairs = np.column_stack((self.model.contacts.a, self.model.contacts.b))
-        self._owner = np.array(self.model.primitives.body)
+        self._pivots = self._pose["x"], self._pose["y"]
+        self._owner: list[int] = self.model.primitives.body.tolist()
         self._bodies: list[int] = self.model.coordinates.body.tolist()
 
     def coordinate(self, name: str) -> int:
@@ -177,13 +178,13 @@ class Hands:
     def meeting(self, contact: int, q: Array) -> Meeting:
         describe(self.model, contact, q, self._pose, self._row)
         _, nx, ny, x, y = self._row.tolist()
-        first, second = (int(k) for k in self._pairs[contact])
+        first, second = self._pairs[contact].tolist()
         rates = {}
         for sign, primitive in ((1.0, first), (-1.0, second)):
-            body = int(self._owner[primitive])
-            pose = self._pose[body]
-            rates[body] = sign * ((x - float(pose.x)) * ny - (y - float(pose.y)) * nx)
-        return Meeting((x, y), (nx, ny), rates, (first, second), int(self._owner[second]))
+            body = self._owner[primitive]
+            px, py = (float(value[body]) for value in self._pivots)
+            rates[body] = sign * ((x - px) * ny - (y - py) * nx)
+        return Meeting((x, y), (nx, ny), rates, (first, second), self._owner[second])
 
     def gap(self, contact: int, q: Array) -> float:
         """How far apart the two primitives of a contact are, m."""
@@ -192,7 +193,7 @@ class Hands:
 
     def flat_of(self, contact: int) -> int:
         """The body that holds the line or the rounder arc of a contact, out of whose material its normal points."""
-        return int(self._owner[self._pairs[contact][1]])
+        return self._owner[int(self._pairs[contact][1])]
 
     def body(self, name: str) -> int:
         """The number in the model of a pivoted body."""
@@ -201,8 +202,8 @@ class Hands:
     def pivot(self, name: str, q: Array) -> Point:
         """Where a body's origin is (m)."""
         describe(self.model, 0, q, self._pose, self._row)
-        pose = self._pose[self.body(name)]
-        return float(pose.x), float(pose.y)
+        x, y = (float(value[self.body(name)]) for value in self._pivots)
+        return x, y
 
     def error(self, rate: float) -> float:
         """Of an angle at which a contact closes at this rate (m/rad), by what outlines leave open, rad."""
