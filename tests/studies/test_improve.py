@@ -11,8 +11,10 @@ import pytest
 
 import watchsim as ws
 import watchsim.studies.improve as improving
+from watchsim.studies.all_cycles import judged
 from watchsim.cli import main
 from watchsim.scene.errors import SceneError
+from watchsim.scene.load import changed
 from watchsim.scene.rewrite import rewritten, write_scene
 from watchsim.studies.goals import aims_from, knobs_from
 from watchsim.studies.workers import Here
@@ -161,10 +163,22 @@ def test_a_yield_is_that_of_the_design(tmp_path, monkeypatch):
 
 @pytest.mark.slow
 def test_designs_that_do_not_tick_turn_the_search_back():
-    """Half of the range knocks: the largest amplitude is at the edge of what does not."""
+    """Half of the range knocks, in a run of 6 s as on the cycle: the largest amplitude is at the edge of what does not."""
     scene = ws.load(ws.profiles_dir() / "bench_lever")
-    found = ws.improve(scene, {"torques.0.value": ("-12 µN·m", "-5 µN·m")}, "amplitude max")
+    found = ws.improve(scene, {"torques.0.value": ("-12 µN·m", "-5 µN·m")}, "amplitude max", duration=6.0)
     assert found.found and found.without > 0 and found.value > ws.steady(scene).amplitude_deg + 10.0
+    drive = found.keys["torques.0.value"][1]
+    runs = [ws.simulate(changed(scene, {"torques.0.value": share * drive}), 6.0) for share in (1.0, 1.02)]
+    assert [judged(run, since_start=True).name for run in runs] == ["ticks", "knocks"]
+
+
+@pytest.mark.slow
+def test_a_search_by_evolution_ends_in_the_optimum(tmp_path):
+    vary = {"bodies.wheel.inertia": ("1 g·mm²", "9 g·mm²"), "springs.0.stiffness": ("2 µN·m/rad", "4 µN·m/rad")}
+    scene = scene_of(tmp_path, DECAY)
+    found = ws.improve(scene, vary, "inertia max", ["period <= 0.2 s"], duration=1.0, method="differential-evolution")
+    assert found.found and found.evaluations > 100
+    assert found.keys["bodies.wheel.inertia"][1] == pytest.approx(4e-6 * (0.2 / math.tau) ** 2, rel=1e-6)
 
 
 def test_a_file_keeps_its_comments(tmp_path):

@@ -175,6 +175,25 @@ def test_rare_failures_are_counted_by_their_true_frequency(beta):
     assert sum(1.0 - one.high <= truth <= 1.0 - one.low for one in found) >= 52
 
 
+@pytest.mark.parametrize("short", [1.0, 1.3])
+def test_rare_failures_in_a_corner_of_uniform_dimensions(short):
+    """Six deviations of the range ±1, whose sum is within `short` of the largest: a simplex of volume short⁶/6! in 2⁶."""
+    space = Space(tuple(Tolerance(f"x{i}", 0.0, -1.0, 1.0, LENGTH) for i in range(6)))
+
+    def margins(off):
+        return 6.0 - short - off.sum(axis=1, keepdims=True)
+
+    shifted = towards_failures(space, margins)
+    assert isinstance(shifted, Shifted)
+    truth, numbers, found = short**6 / math.factorial(6) / 2.0**6, np.arange(2048), []
+    for seed in range(40):
+        scores, weights = shifted.scores(space.uniform(numbers, seed, extra=1))
+        off = space.deviations(space.shares(norm.cdf(scores)))
+        found.append(weighted((margins(off) >= 0.0).all(axis=1), weights, sequence_of(numbers)))
+    assert np.mean([1.0 - one.value for one in found]) == pytest.approx(truth, rel=0.1)
+    assert np.std([1.0 - one.value for one in found]) < 0.2 * truth
+
+
 # ISO 286-1:2010 in µm, from its tables of deviations (ISO 286-2).
 @pytest.mark.parametrize(
     ("name", "size_mm", "low", "high"),

@@ -115,11 +115,47 @@ def test_a_sample_can_be_replayed(desk, whole, capsys):
     assert f"sample {number}" in capsys.readouterr().out
 
 
+@pytest.mark.parametrize("key", ["tolerances.contacts.0.friction.limits", 'tolerances."contacts.0.friction".limits'])
+def test_limits_are_set_like_any_other_value(desk, capsys, key):
+    assert main(["check", str(desk), "--set", f"{key}=±0.01"]) == 0
+    assert [line.split()[:3] for line in capsys.readouterr().out.splitlines() if "contacts.0.friction" in line] == [
+        ["contacts.0.friction", "0.15", "±0.01,"]
+    ]
+
+
+def test_a_study_with_limits_set_is_another_one_and_can_be_replayed(desk, capsys):
+    wide = ["--set", "tolerances.torques.0.value.limits=±1 µN·m", "--no-plots", "-o", str(desk / "wide")]
+    assert main(["tolerance", str(desk), "--samples", "16", *wide]) == 0
+    scene = sample_scene(desk / "wide", 3)
+    drawn = ws.tolerance(changed(ws.load(desk), {"tolerances.torques.0.value.limits": "±1 µN·m"}), 16)
+    assert results(finished(desk / "wide")) == results(drawn)
+    assert scene.torques[0].value != ws.load(desk).torques[0].value
+    assert main(["tolerance", str(desk), "--samples", "16", "--no-plots", "--resume", "-o", str(desk / "wide")]) == 2
+    unknown = ["tolerances.torques.0.nonsense.limits=±1 µN·m", "tolerances.torques.0.value.limit=±1 µN·m"]
+    assert main(["check", str(desk), *(word for one in unknown for word in ("--set", one))]) == 2
+    said = capsys.readouterr().err
+    assert "torques.0.nonsense" in said or "unknown key" in said
+
+
 @pytest.mark.slow
 def test_a_study_stops_once_the_yield_is_known_closely_enough(desk):
     study = ws.tolerance(desk, 4096, until="±45 %")
     assert study.samples == 256
     assert 0.5 * (study.yield_high - study.yield_low) <= 0.45
+
+
+@pytest.mark.slow
+def test_rare_failures_of_a_watch_are_those_of_plain_sampling(desk, whole):
+    """The share of watches below a limit in the tail: 512 that are drawn mostly near it against 4096 drawn as they are made."""
+    amplitudes = whole.outputs["amplitude_deg"]
+    limit = f"{amplitudes.mean - 2.3 * amplitudes.sigma:.4f}°"
+    scene = changed(ws.load(desk), {"expect.amplitude.min": limit})
+    plain, near = ws.tolerance(scene, 4096, workers=2), ws.tolerance(scene, 512, importance=True, workers=2)
+    failing = 1.0 - plain.yield_
+    assert 5e-4 < failing < 2e-2
+    half = [0.5 * (one.yield_high - one.yield_low) for one in (plain, near)]
+    assert half[1] < half[0]
+    assert abs(near.yield_ - plain.yield_) < 1.5 * math.hypot(*half)
 
 
 def test_shards_of_another_study_are_refused(desk, whole):

@@ -12,6 +12,7 @@ from typing import Any
 from watchsim.scene.errors import Faults
 from watchsim.scene.keys import (
     DESIGN,
+    DOTTED,
     DRIVEN,
     LAYERS,
     LISTED,
@@ -27,6 +28,7 @@ from watchsim.scene.keys import (
     entered,
     key_at,
     nearest,
+    path_of,
     steps_into,
 )
 from watchsim.scene.scene import MOTIONS, Scene
@@ -36,7 +38,7 @@ from watchsim.units import DIMENSIONS, NUMBER, Dimension, UnitError, known_unit,
 
 def assign(mapping: dict[str, Any], key: str, value: object, faults: Faults) -> None:
     """Put the value there, into tables that are made where they are missing; what says the same thing beside it goes."""
-    path = tuple(key.split("."))
+    path = path_of(key)
     described = key_at(path)
     if described is None or path[0] == "lock":
         faults.add(key, f"unknown key. {_advice(path)}", shown(value))
@@ -95,7 +97,7 @@ def paths_of(mapping: Mapping[str, Any]) -> dict[str, str | float]:
         if isinstance(value, str | int | float):
             found[path] = value
 
-    enter("", {name: value for name, value in mapping.items() if name not in ("lock", "tolerances", "expect")})
+    enter("", {name: value for name, value in mapping.items() if name not in ("lock", "expect")})
     return found
 
 
@@ -134,7 +136,9 @@ def _inside(key: Key, holder: dict[str, Any], path: tuple[str, ...], steps: tupl
         entry = _element(entry, steps[1]) if len(steps) > 1 else entry
         return entry, "" if isinstance(entry, dict) else f"there is no such table under adjust{many}"
     if key.form == NAMED_TABLES:
-        named = holder.get(name, {})
+        named = holder.setdefault(name, {}) if name in DOTTED else holder.get(name, {})
+        if name in DOTTED and isinstance(named, dict):
+            named.setdefault(steps[0], {})
         if not isinstance(named, dict) or steps[0] in named:
             return named[steps[0]] if isinstance(named, dict) else None, ""
         return None, f'there is no "{steps[0]}" in {name}. {nearest(steps[0], named)}'

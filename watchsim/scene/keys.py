@@ -462,6 +462,7 @@ DESIGN = "design"  # [design], whose keys are the dimensions of the design it na
 
 TABLES = {"scene": SCENE, "run": RUN, "timegrapher": TIMEGRAPHER, "watch": WATCH, "lock": LOCK}  # [name]
 NAMED = {"bodies": BODY, "expect": EXPECTATION, "tolerances": TOLERANCE}  # [name.anything]
+DOTTED = ("expect", "tolerances")  # of these, whose names are paths
 LISTED = {  # [[name]]
     "springs": SPRING,
     "torques": TORQUE,
@@ -477,6 +478,12 @@ SECTIONS: Keys = {
     **{name: Key(inner=keys, form=NAMED_TABLES) for name, keys in NAMED.items()},
     **{name: Key(inner=keys, form=TABLES_LISTED) for name, keys in LISTED.items()},
 }
+
+
+def path_of(key: str) -> tuple[str, ...]:
+    """The words of a dotted path; the names below [tolerances] and [expect] are dotted themselves, and one word."""
+    first, *rest = key.split(".")
+    return (first, ".".join(rest[:-1]), rest[-1]) if first in DOTTED and len(rest) > 2 else (first, *rest)
 
 
 def key_at(path: tuple[str, ...]) -> Key | None:

@@ -172,6 +172,7 @@ def assignments(texts: Iterable[str]) -> dict[str, object]:
     found: dict[str, object] = {}
     for text in texts:
         key, equals, value = (part.strip() for part in text.partition("="))
+        key = key.replace('"', "")  # "design.lock" is written with quotes below [tolerances]
         if not equals or not key or not value:
             raise SceneError([Fault(text, 'write KEY=VALUE, such as "torques.0.value=-1.2 µN·m"', place="--set")])
         found[key] = _literal(text, value) if value[0] in "[{\"'" else value

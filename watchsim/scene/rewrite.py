@@ -14,7 +14,7 @@ from typing import Any
 
 from watchsim.scene.assign import assign
 from watchsim.scene.errors import Faults
-from watchsim.scene.keys import LISTED
+from watchsim.scene.keys import LISTED, path_of
 from watchsim.scene.load import changed
 from watchsim.scene.scene import Scene
 from watchsim.scene.toml import key_lines, parsed, toml_text, value_text
@@ -47,7 +47,7 @@ def rewritten(scene: Scene, changes: Mapping[str, str | float]) -> str:
 
 def _over_design(mapping: dict[str, Any], whole: Mapping[str, Any], key: str, value: object) -> None:
     """What a scene with a design says for the value: dimensions by name, entries of lists by what they are of."""
-    section, name, *rest = key.split(".")
+    section, name, *rest = path_of(key)
     if section in LISTED:
         entry = whole[section][int(name)]
         same = {one: entry[one] for one in ("between", "body") if one in entry}

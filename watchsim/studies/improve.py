@@ -20,6 +20,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from watchsim.analysis.verdict_kinds import Verdict
 from watchsim.scene.errors import Fault, SceneError
 from watchsim.scene.load import changed
 from watchsim.scene.roles import nominal_frequency
@@ -214,7 +215,7 @@ class Search:
         if output.name not in KNOWN:
             return to(own[output.name], output.unit) if output.unit else own[output.name]
         value = row.get(output.column)
-        return math.nan if value is None else float(value)
+        return float(value) if value is not None and Verdict(row.get("verdict")).works else math.nan
 
     def _yield(self, own: Mapping[str, float]) -> float:
         """%, of the same draws each time, so that designs differ by what they are and not by chance."""

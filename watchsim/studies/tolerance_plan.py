@@ -151,5 +151,6 @@ def without_tolerances(scene: Scene) -> Scene:
     written = scene.written
     if written is not None:
         mapping = {key: value for key, value in written.mapping.items() if key != SECTION}
-        written = dataclasses.replace(written, mapping=mapping)
+        changes = {key: value for key, value in written.changes.items() if not key.startswith(f"{SECTION}.")}
+        written = dataclasses.replace(written, mapping=mapping, changes=changes)
     return dataclasses.replace(scene, source=source, written=written, tolerances=(), correlated=())

@@ -24,7 +24,8 @@ Flags = NDArray[np.bool_]
 CONFIDENCE = 0.95
 FEW = 12  # failing or good samples, below which replications scatter too irregularly
 CHEAP = 1 << 16  # watches of the linear prediction, to know its yield
-SOUGHT = 60  # steps to the most probable failure
+SOUGHT = 100  # steps to the most probable failure
+STEP = 1e-4  # of a score, for slopes
 FARTHEST = 7.0  # sigmas: failures farther off are ignored
 
 
@@ -106,30 +107,42 @@ def predicted_yield(space: Space, margins: Predict, seed: int) -> float:
 def towards_failures(space: Space, margins: Predict) -> Shifted | None:
     """Around the most probable failure at each limit, as the prediction has it; None where it reaches no limit.
 
-    First-order reliability method: the point of a limit that is nearest to the middle in normal scores, by the steps of
-    Hasofer, Lind (1974), Rackwitz and Fiessler (1978). Limits out of reach are left out.
+    First-order reliability method: the point of a limit that is nearest to the middle in normal scores (Hasofer, Lind 1974), by
+    scipy's SLSQP. The steps of Rackwitz and Fiessler (1978) go to and fro where scores of uniform dimensions near their ends
+    move nothing any more. Limits out of reach are left out.
     """
+    from scipy.optimize import minimize
+
     width = len(space.draws)
 
     def at(scores: Floats) -> Floats:
         shares = np.clip(ndtr(np.atleast_2d(scores)), CLEAR, 1.0 - CLEAR)
         return margins(space.deviations(space.shares(shares)))
 
-    step, found = 1e-4, []
-    for limit in range(at(np.zeros(width)).shape[1]):
-        here = np.zeros(width)
-        for _ in range(SOUGHT):
-            away = float(at(here)[0, limit])
-            near = here + step * np.vstack([np.eye(width), -np.eye(width)])
-            ends = at(near)[:, limit]
-            slope = (ends[:width] - ends[width:]) / (2.0 * step)
-            size = float(slope @ slope)
-            if size == 0.0:
-                break
-            here = here + 0.5 * (slope * (slope @ here - away) / size - here)
-        reached = abs(float(at(here)[0, limit])) <= 1e-3 * abs(float(at(np.zeros(width))[0, limit]))
-        if reached and 0.0 < float(np.linalg.norm(here)) <= FARTHEST:
-            found.append(here)
+    def slope(scores: Floats, limit: int) -> Floats:
+        ends = at(scores + STEP * np.vstack([np.eye(width), -np.eye(width)]))[:, limit]
+        return (ends[:width] - ends[width:]) / (2.0 * STEP)
+
+    found = []
+    for limit, middle in enumerate(at(np.zeros(width))[0]):
+        away = slope(np.zeros(width), limit)
+        if middle == 0.0 or not away.any():
+            continue
+        kept = {"type": "eq", "fun": lambda u, k=limit, unit=middle: at(u)[0, k] / unit}
+        kept["jac"] = lambda u, k=limit, unit=middle: slope(u, k) / unit
+        begin = -np.sign(middle) * away / np.linalg.norm(away)
+        got = minimize(
+            lambda u: (0.5 * float(u @ u), u),
+            begin,
+            jac=True,
+            method="SLSQP",
+            bounds=[(-FARTHEST, FARTHEST)] * width,
+            constraints=[kept],
+            options={"maxiter": SOUGHT},
+        )
+        reached = abs(float(at(got.x)[0, limit])) <= 1e-3 * abs(float(middle))
+        if reached and 0.0 < float(np.linalg.norm(got.x)) <= FARTHEST:
+            found.append(got.x.round(6))  # the same on all machines
     if not found:
         return None
     parts = ndtr(-np.linalg.norm(found, axis=1))
