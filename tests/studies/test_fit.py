@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -99,6 +100,17 @@ def test_intervals_hold_the_true_values_as_often_as_they_say(balance):
     assert ((hits > 95.0 - 3.3) & (hits < 95.0 + 3.3)).all()
 
 
+def test_a_limit_that_is_reached_leaves_no_interval(balance, tmp_path):
+    """The spring is softer than it may become: what was measured lies beyond, and the interval cannot hold it."""
+    path = tmp_path / "decay.csv"
+    written(path, *decay(0.1, 3))
+    stiff = ws.load(balance).springs[0].stiffness
+    found = ws.fit(balance, path, {"springs.0.stiffness": (1.001 * TRUE[0], 2.0 * stiff), "damping.0.viscous": None})
+    assert "springs.0.stiffness came to its limit" in found.message
+    assert found.keys["springs.0.stiffness"].low is None and found.keys["springs.0.stiffness"].high is None
+    assert found.keys["damping.0.viscous"].low is not None
+
+
 def test_what_cannot_be_told_apart_is_named(balance, tmp_path):
     """Inertia, stiffness and damping only matter by their ratios; a mass changes nothing."""
     path = written(tmp_path / "decay.csv", *decay(0.1, 1))
@@ -133,6 +145,28 @@ def test_readings_of_a_timing_machine(tmp_path):
     alone.write_text("amplitude_deg\n" + "\n".join(f"{290.0 + 0.3 * k}" for k in range(4)) + "\n", encoding="utf-8")
     apart = ws.fit(nominal, alone, {"contacts.0.friction": (0.05, 0.3), "torques.0.value": None})
     assert apart.cannot_tell_apart == (("contacts.0.friction", "torques.0.value"),)
+
+
+@pytest.mark.slow
+def test_readings_in_positions_and_hours_after_winding(tmp_path):
+    """Where the balance's centre of mass lies, and how much of its train's force the wheel gets, from readings like a certificate's."""
+    scene = ws.load(Path(ws.__file__).parents[1] / "docs" / "guide" / "positions" / "swiss_lever.toml")
+    truth = {"bodies.balance.centre_of_mass.0": 0.9e-6, "bodies.balance.centre_of_mass.1": 0.3e-6, "torques.0.efficiency": 0.72}
+    true = scene
+    for key, value in truth.items():
+        true = true.set(key, value)
+    random = np.random.default_rng(11)
+    lines = ["position,wound_h,rate_s_per_d,amplitude_deg,rate_s_per_d_error,amplitude_deg_error"]
+    for position, wound in (("CH", 0), ("3H", 0), ("6H", 0), ("9H", 24), ("CH", 24)):
+        cycle = ws.steady(true.set("watch.position", position).set("watch.since_wound", 3600.0 * wound))
+        rate, amplitude = cycle.rate_s_per_d + 0.1 * random.standard_normal(), cycle.amplitude_deg + 0.2 * random.standard_normal()
+        lines.append(f"{position},{wound},{rate},{amplitude},0.1,0.2")
+    (tmp_path / "readings.csv").write_text("\n".join(lines), encoding="utf-8")
+    found = ws.fit(scene, tmp_path / "readings.csv", list(truth))
+    for key, value in truth.items():
+        one = found.keys[key]
+        assert one.low < value < one.high
+        assert one.high - one.low < 0.2 * abs(value)
 
 
 @pytest.mark.slow

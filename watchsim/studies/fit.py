@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -287,10 +287,14 @@ class Fitting:
             f"{knob.key} came to its limit, {knob.shown(limit)}"
             for knob, value in zip(self.knobs, self.at(z), strict=True)
             for limit in (knob.low, knob.high)
-            if abs(value - limit) < 1e-6 * (knob.high - knob.low)
+            if self._is_at(knob, value, limit)
         ]
         stopped += [] if found.status > 0 else [f"not settled after {found.nfev} steps"]
         return self._report(z, self.jacobian(z), "; ".join(stopped))
+
+    @staticmethod
+    def _is_at(knob: Knob, value: float, limit: float) -> bool:
+        return abs(value - limit) < 1e-6 * (knob.high - knob.low)
 
     def _weigh(self, left: Array) -> None:
         """Each kind of reading by its own scatter, with its share of what fitting has taken from it."""
@@ -311,6 +315,9 @@ class Fitting:
             left = self.residuals(z)
             residual = float(np.sqrt(np.mean(left**2)))
             keys, groups, words = self._intervals(z, jacobian, left)
+            for knob, value in zip(self.knobs, self.at(z), strict=True):
+                if any(self._is_at(knob, value, limit) for limit in (knob.low, knob.high)):
+                    keys[knob.key] = replace(keys[knob.key], low=None, high=None)  # what was measured lies beyond
         sizes = np.cumsum([len(self.measured.columns[kind]) for kind in self.kinds])[:-1]
         return Fit(
             title=self.scene.title,

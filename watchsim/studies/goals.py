@@ -25,6 +25,7 @@ UNITS = {"°": ANGLE, "s/d": RATE, "ms": TIME, "s": TIME, "": NUMBER, "%": NUMBE
 YIELD = Output("yield", "yield_percent", "yield", "%", has_error=False)  # of watches made to the scene's tolerances
 KNOWN = {**OUTPUTS, YIELD.name: YIELD}
 FAR = 10.0  # times the value a number without limits may become, or a tenth of it
+SIGNED = {"position", "centre_of_mass", "angle", "velocity", "rest"}  # may as well have the other sign
 PLACE = "improve"
 
 
@@ -119,6 +120,8 @@ def _knob(scene: Scene, key: str, pair: tuple[Any, Any] | None, faults: list[Fau
     least, most = (None, None) if quantity is None else (quantity.low, quantity.high)
     if pair is None:
         wide = sorted((value / FAR, value * FAR)) if value else [-1.0, 1.0]
+        if value and SIGNED.intersection(key.split(".")):
+            wide = [-FAR * abs(value), FAR * abs(value)]
         low, high = wide[0] if least is None else max(least, wide[0]), wide[1] if most is None else min(most, wide[1])
     for limit, bad, word in ((least, low, "least"), (most, high, "most")):
         if pair is not None and limit is not None and (bad < limit if word == "least" else bad > limit) and low < high:
