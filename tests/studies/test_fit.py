@@ -149,9 +149,10 @@ def test_readings_of_a_timing_machine(tmp_path):
 
 @pytest.mark.slow
 def test_readings_in_positions_and_hours_after_winding(tmp_path):
-    """Where the balance's centre of mass lies, and how much of its train's force the wheel gets, from readings like a certificate's."""
+    """Where the balance's centre of mass lies, and what its train leaves of the force, from readings like a certificate's."""
     scene = ws.load(Path(ws.__file__).parents[1] / "docs" / "guide" / "positions" / "swiss_lever.toml")
-    truth = {"bodies.balance.centre_of_mass.0": 0.9e-6, "bodies.balance.centre_of_mass.1": 0.3e-6, "torques.0.efficiency": 0.72}
+    centre = "bodies.balance.centre_of_mass"
+    truth = {f"{centre}.0": 0.9e-6, f"{centre}.1": 0.3e-6, "torques.0.efficiency": 0.72}
     true = scene
     for key, value in truth.items():
         true = true.set(key, value)
@@ -159,7 +160,7 @@ def test_readings_in_positions_and_hours_after_winding(tmp_path):
     lines = ["position,wound_h,rate_s_per_d,amplitude_deg,rate_s_per_d_error,amplitude_deg_error"]
     for position, wound in (("CH", 0), ("3H", 0), ("6H", 0), ("9H", 24), ("CH", 24)):
         cycle = ws.steady(true.set("watch.position", position).set("watch.since_wound", 3600.0 * wound))
-        rate, amplitude = cycle.rate_s_per_d + 0.1 * random.standard_normal(), cycle.amplitude_deg + 0.2 * random.standard_normal()
+        rate, amplitude = np.array([cycle.rate_s_per_d, cycle.amplitude_deg]) + (0.1, 0.2) * random.standard_normal(2)
         lines.append(f"{position},{wound},{rate},{amplitude},0.1,0.2")
     (tmp_path / "readings.csv").write_text("\n".join(lines), encoding="utf-8")
     found = ws.fit(scene, tmp_path / "readings.csv", list(truth))

@@ -11,11 +11,11 @@ import pytest
 
 import watchsim as ws
 import watchsim.studies.improve as improving
-from watchsim.studies.all_cycles import judged
 from watchsim.cli import main
 from watchsim.scene.errors import SceneError
 from watchsim.scene.load import changed
 from watchsim.scene.rewrite import rewritten, write_scene
+from watchsim.studies.all_cycles import judged
 from watchsim.studies.goals import aims_from, knobs_from
 from watchsim.studies.workers import Here
 

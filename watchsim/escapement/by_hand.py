@@ -171,8 +171,8 @@ class Hands:
     def turns(self, name: str, ids: Integers, q: Array, sense: float, reach: float, moved: int, angles: list[float]) -> Array:
         """How far body `name` can be turned from q until it touches, rad, with coordinate `moved` at each of the angles."""
         found, body = np.empty(len(angles)), self._bodies[self.coordinate(name)]
-        span, at = (0.0, reach), np.array(angles, dtype=float)
-        turns_to_touch(self.model, ids, q.copy(), moved, at, body, sense, span, self.room, self._pose, found)
+        at = np.array(angles, dtype=float)
+        turns_to_touch(self.model, ids, q.copy(), moved, at, body, sense * reach, self.room, (found, self._pose))
         return found
 
     def meeting(self, contact: int, q: Array) -> Meeting:

@@ -181,7 +181,7 @@ class Balance:
         return self.hands.touch(self.parts.lever, ids, self.at(start, balance), sense, FARTHEST)
 
     def freedoms(self, start: float, balances: list[float], sense: float, ids: Integers) -> list[float]:
-        """How far the lever can be turned from `start` with the balance at each of the angles, rad; infinite: nothing stops it."""
+        """How far the lever can be turned from `start` with the balance at each angle, rad; infinite: nothing stops it."""
         q = self.at(start, 0.0)
         # As the difference of two angles, each of which is rounded, that a single `lever` gives.
         turns = self.hands.turns(self.parts.lever, ids, q, sense, FARTHEST, self._balance, balances)

@@ -92,15 +92,17 @@ def turn_to_touch(model, ids, q, turned, sense, span, room, out_pose):
 
 
 @entry
-def turns_to_touch(model, ids, q, moved, angles, turned, sense, span, room, out_pose, out_turns):
+def turns_to_touch(model, ids, q, moved, angles, turned, reach, room, out_turns):
     """The same with coordinate `moved` at each of `angles` in turn: fills `out_turns`, infinite where the body stays free.
 
-    q is scratch: its coordinate `moved` stands at the last of the angles afterwards.
+    Turns from 0 to `reach` are looked at, in its direction. `out_turns[0]` takes them, `out_turns[1]` is scratch, as is
+    q: its coordinate `moved` stands at the last of the angles afterwards.
     """
+    turns, pose = out_turns
     for i in range(len(angles)):
         q[moved] = angles[i]
-        turn, found = _turn_to_touch(model, ids, q, turned, sense, span, room, out_pose)
-        out_turns[i] = turn if found >= 0 else math.inf
+        turn, found = _turn_to_touch(model, ids, q, turned, math.copysign(1.0, reach), (0.0, abs(reach)), room, pose)
+        turns[i] = turn if found >= 0 else math.inf
 
 
 @entry

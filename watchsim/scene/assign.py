@@ -12,7 +12,6 @@ from typing import Any
 from watchsim.scene.errors import Faults
 from watchsim.scene.keys import (
     DESIGN,
-    DOTTED,
     DRIVEN,
     LAYERS,
     LISTED,
@@ -136,9 +135,9 @@ def _inside(key: Key, holder: dict[str, Any], path: tuple[str, ...], steps: tupl
         entry = _element(entry, steps[1]) if len(steps) > 1 else entry
         return entry, "" if isinstance(entry, dict) else f"there is no such table under adjust{many}"
     if key.form == NAMED_TABLES:
-        named = holder.setdefault(name, {}) if name in DOTTED else holder.get(name, {})
-        if name in DOTTED and isinstance(named, dict):
-            named.setdefault(steps[0], {})
+        named = holder.setdefault(name, {}) if name == "tolerances" else holder.get(name, {})
+        if name == "tolerances" and isinstance(named, dict):
+            named.setdefault(steps[0], {})  # a tolerance of what has none yet; nonsense is found where it is read
         if not isinstance(named, dict) or steps[0] in named:
             return named[steps[0]] if isinstance(named, dict) else None, ""
         return None, f'there is no "{steps[0]}" in {name}. {nearest(steps[0], named)}'
