@@ -166,6 +166,27 @@ BEARING = np.dtype(
     ]
 )
 
+# An acceleration of the case: a half sine of these heights, or rows of `jolts`.
+SHOCK = np.dtype(
+    [
+        ("start", "f8"),  # s
+        ("duration", "f8"),
+        ("over", "f8"),  # from when on nothing changes any more; infinite where the case turns on
+        ("x", "f8"),  # m/s²
+        ("y", "f8"),
+        ("turn", "f8"),  # rad/s²
+        ("first", "i8"),
+        ("count", "i8"),  # 0: a half sine
+        ("about_x", "f8"),  # of all: the point of the case that is accelerated so, m
+        ("about_y", "f8"),
+        ("gravity_x", "f8"),  # of the scene, which turns against the case
+        ("gravity_y", "f8"),
+    ]
+)
+
+# Mass, first moment and inertia of a body with what it carries, about the origin of its frame; rows only in scenes with shocks.
+WEIGHED = np.dtype([("body", "i8"), ("mass", "f8"), ("moment_x", "f8"), ("moment_y", "f8"), ("inertia", "f8")])
+
 TABLE = np.dtype(
     [
         ("coordinate", "i8"),
@@ -273,6 +294,9 @@ class Model(NamedTuple):
     laws: Records
     pairs: Records
     near: NDArray[np.int64]  # contacts that can ever touch, by pair of bodies
+    shocks: Records
+    jolts: NDArray[np.float64]  # (rows, 6) of recordings: time since the start, A_x, A_y, Φ'', Φ', Φ
+    weighed: Records
 
 
 ModelRef = by_reference(Model, __name__)

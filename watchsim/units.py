@@ -59,6 +59,7 @@ MASS = Dimension("mass", ((0, 1, 0, 0, 0),), "kg", ("g", "mg"))
 TIME = Dimension("time", ((0, 0, 1, 0, 0),), "s", ("ms", "s"))
 SPEED = Dimension("speed", ((1, 0, -1, 0, 0),), "m/s", ("m/s", "mm/s"))
 ACCELERATION = Dimension("acceleration", ((1, 0, -2, 0, 0),), "m/s²", ("mm/s²", "m/s²"))
+SPIN_UP = Dimension("angular acceleration", ((0, 0, -2, 1, 0),), "rad/s²", ("rad/s²", "°/s²"))
 PRESSURE = Dimension("modulus of elasticity", ((-1, 1, -2, 0, 0),), "Pa", ("MPa", "GPa"))
 DENSITY = Dimension("density", ((-3, 1, 0, 0, 0),), "kg/m³", ("kg/m³", "g/cm³"))
 INERTIA = Dimension("inertia", ((2, 1, 0, 0, 0),), "kg·m²", ("g·cm²", "mg·cm²"))
@@ -79,8 +80,9 @@ TEMPERATURE = Dimension("temperature", ((0, 0, 0, 0, 1),), "°C", ("°C", "°C")
 PER_KELVIN = Dimension("temperature coefficient", ((0, 0, 0, 0, -1),), "/K", ("ppm/K", "ppm/K"))
 PER_SPEED = Dimension("rate per speed", ((-1, 0, 1, 0, 0),), "s/m", ("s/m", "s/mm"))
 DIMENSIONS = (
-    *(NUMBER, ANGLE, SPIN, LENGTH, MASS, TIME, SPEED, ACCELERATION, PRESSURE, DENSITY, INERTIA, TORQUE, FORCE, FREQUENCY),
+    *(NUMBER, ANGLE, SPIN, LENGTH, MASS, TIME, SPEED, ACCELERATION, PRESSURE, DENSITY, INERTIA, TORQUE, FORCE),
     *(ROTARY_STIFFNESS, LINEAR_STIFFNESS, ROTARY_VISCOUS, LINEAR_VISCOUS, ROTARY_QUADRATIC, LINEAR_QUADRATIC, RATE),
+    *(FREQUENCY, SPIN_UP),
     *(TRAVEL_PER_TURN, PER_LENGTH, ROTARY_CUBIC, LINEAR_CUBIC, TEMPERATURE, PER_KELVIN, PER_SPEED),
 )
 

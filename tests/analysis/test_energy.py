@@ -29,7 +29,9 @@ from watchsim.model import (
     OVER_TIME,
     PRIMITIVE,
     REPEATED,
+    SHOCK,
     TABLE,
+    WEIGHED,
     Model,
     records,
 )
@@ -44,8 +46,9 @@ from watchsim.simulation.simulate import simulate
 def model_of(**parts: Any) -> Any:
     """`coordinates`: {field: values by coordinate}; `joints`, `tables`: lists of {field: value}; tables bring their knots."""
     none = {"bodies": BODY, "lines": LINE_SPRING, "bearings": BEARING, "primitives": PRIMITIVE, "contacts": CONTACT}
-    none |= {"laws": LAW, "pairs": BODY_PAIR}
+    none |= {"laws": LAW, "pairs": BODY_PAIR, "shocks": SHOCK, "weighed": WEIGHED}
     made: dict[str, Any] = {name: records(dtype, 0) for name, dtype in none.items()} | {"near": np.zeros(0, np.int64)}
+    made["jolts"] = np.zeros((0, 6))
     made["coordinates"] = records(COORDINATE, len(parts["coordinates"]["mass"]))
     for name, values in parts["coordinates"].items():
         made["coordinates"][name] = values

@@ -201,7 +201,7 @@ def everything(rng: np.random.Generator) -> SimpleNamespace:
     tables.coordinate, tables.on = [4, 1, 2, 0], [-1, 0, DRIVEN, -1]
     tables.over, tables.start, tables.count = [OVER_TIME, OVER_ANGLE, REPEATED, OVER_ANGLE], 1, 4
     return SimpleNamespace(
-        coordinates=c, joints=joints, tables=tables, lines=(), knots=np.vstack([[9.0, 9.0], KNOTS, [7.0, 7.0]])
+        coordinates=c, joints=joints, tables=tables, lines=(), shocks=(), knots=np.vstack([[9.0, 9.0], KNOTS, [7.0, 7.0]])
     )
 
 

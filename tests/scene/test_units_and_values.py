@@ -111,6 +111,7 @@ WORTH: dict[Dimension, dict[str, float | None]] = {
     units.TEMPERATURE: {"°C": 1.0, "K": 1.0},
     units.PER_KELVIN: {"/K": 1.0, "%/K": 0.01, "ppm/K": 1e-6, "ppm/°C": 1e-6},
     units.PER_LENGTH: {"rad/m": 1.0, "rev/mm": 6283.185307179586, "rad/mm": 1e3},
+    units.SPIN_UP: {"rad/s²": 1.0, "°/s²": math.pi / 180.0, "rad/s^2": 1.0},
     units.PER_SPEED: {"s/m": 1.0, "s/mm": 1e3, "ms/mm": 1.0},
 }
 
@@ -127,8 +128,8 @@ def test_what_a_unit_is_worth(kind: Dimension) -> None:
 
 
 def test_every_kind_of_quantity_is_listed() -> None:
-    assert set(DIMENSIONS) == set(WORTH) and len(DIMENSIONS) == 28
-    assert len({kind.name for kind in DIMENSIONS}) == 28
+    assert set(DIMENSIONS) == set(WORTH) and len(DIMENSIONS) == 29
+    assert len({kind.name for kind in DIMENSIONS}) == 29
 
 
 ALIKE = {frozenset((NUMBER, RATE)), frozenset((units.LENGTH, units.TRAVEL_PER_TURN))}  # the mm of a travel per angle

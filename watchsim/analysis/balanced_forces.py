@@ -15,7 +15,9 @@ from numpy.typing import NDArray
 from watchsim.contact.gaps import OPEN, STICK, closed_contacts, poses
 from watchsim.dynamics.bearings import LOAD_ROUNDS
 from watchsim.dynamics.forces import Seen, balance, line_spring_pulls, room
+from watchsim.dynamics.moving_frame import inertial_rows
 from watchsim.mechanism.compile import Compiled
+from watchsim.model import Model
 from watchsim.simulation.state import EventKind
 from watchsim.simulation.trajectory import Array, Trajectory
 from watchsim.storage.columns import blocks
@@ -116,6 +118,14 @@ GENTLE = 1e-4  # of a system scaled to 1: how much small forces are preferred
 SMALLEST = 1e-12  # of the largest: what counts in a system of redundant contacts
 
 
+def inertial(model: Model, t: Array, q: Array, u: Array, body: int = -1) -> tuple[Array, Array]:
+    """What the motion of the case does: force on a body, N (n, 2), and power on each body of `model.weighed`, W (n, bodies)."""
+    force, power = np.zeros((len(t), 2)), np.zeros((len(t), len(model.weighed)))
+    if len(model.shocks):
+        inertial_rows(model, body, *(np.ascontiguousarray(values) for values in (t, q, u)), force, power)
+    return force, power
+
+
 class Balanced(NamedTuple):
     """At n instants the m contacts `ids` with their forces, normals and points, each (n, m, 2); what the contacts do to the
     coordinates, and their accelerations, (n, coordinates)."""
@@ -154,13 +164,13 @@ class Mechanism:
             force = self._forces(seen, mobility, free, friction, codes)
             load = (force[:, :, :1] * seen.w_N + force[:, :, 1:] * seen.w_T).sum(axis=1)
             found = Balanced(ids, force, seen.normal, seen.point, load, free + mobility * load)
-            loaded = self.rubbed(found, q, u)
+            loaded = self.rubbed(found, t, q, u)
             if np.allclose(loaded, dry, rtol=LOAD_ROUGH, atol=0.0):
                 break
             dry = loaded
         return found
 
-    def rubbed(self, found: Balanced, q: Array, u: Array) -> Array:
+    def rubbed(self, found: Balanced, t: Array, q: Array, u: Array) -> Array:
         """Dry friction of the bearings (n, coordinates), N·m or N; with a load, by what it is."""
         dry = np.broadcast_to(self.dry, u.shape)
         across = np.stack((-found.normal[:, :, 1], found.normal[:, :, 0]), axis=2)
@@ -173,7 +183,7 @@ class Mechanism:
             weight = np.array([one.weight_x, one.weight_y])
             carried = np.einsum("k,nkx->nx", on_b.astype(float) - on_a, pressed) - weight
             carried -= u[:, j : j + 1] ** 2 * arm - found.acceleration[:, j : j + 1] * np.stack((-arm[:, 1], arm[:, 0]), axis=1)
-            carried -= self._pulled(int(one.body), q, u)
+            carried -= self._pulled(int(one.body), q, u) + inertial(self.model, t, q, u, int(one.body))[0]
             dry = np.array(dry)
             dry[:, j] += one.grip * (np.hypot(*carried.T) - np.hypot(*weight))
         return np.asarray(dry)

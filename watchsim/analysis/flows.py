@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from watchsim.analysis.balanced_forces import inertial
 from watchsim.analysis.forces import Forces, absolute, bearing_friction, forces
 from watchsim.dynamics.forces import line_spring_energies, line_spring_powers
 from watchsim.mechanism.compile import Compiled
@@ -192,6 +193,8 @@ def flows(run: Trajectory, compiled: Compiled, rows: slice = slice(None)) -> Flo
                 held, taken = line_spring_power(model, place(node), us)
                 driven += weight * step * held
                 damped += weight * step * taken
+            if len(model.shocks):
+                driven += weight * step * _shaken(model, t[:-1] + node * h, place(node), us)
             if len(model.bearings) and run.keep != STATISTICS and run.method == EVENT_DRIVEN:
                 dry = bearing_friction(run, t[:-1] + node * h)
                 damped += weight * step * _rows(model, {k: np.abs(v) for k, v in us.items()}) * (dry - np.asarray(c.coulomb))
@@ -240,7 +243,8 @@ def _changing(model: Model) -> tuple[list[int], list[int]]:
         moved |= {int(table.coordinate), *([int(table.on)] if table.on >= 0 else [])}
     for joint in model.joints:
         slowed |= {int(joint.coordinate), int(joint.on)}
-    return sorted(moved | held_by_lines(model)), sorted(slowed)
+    felt = {k for row in model.weighed for k in _coordinates(model, int(row.body))}
+    return sorted(moved | held_by_lines(model) | felt), sorted(slowed)
 
 
 def _position(h: Array, rows: tuple[Array, Array, Array], wanted: list[int]) -> Callable[[float], Row]:
@@ -269,6 +273,13 @@ def _velocity(h: Array, rows: tuple[Array, Array], wanted: list[int]) -> Callabl
         return dict(zip(wanted, (u0 + s * (a0 + s * (c2 + s * c3))).T, strict=True))
 
     return at
+
+
+def _shaken(model: Model, t: Array, q: Row, u: Row) -> Array:
+    """Work of the motion of the case on each coordinate, W (steps, n); all of a body's on its first one."""
+    power = np.zeros((len(t), len(model.coordinates)))
+    power[:, model.bodies.first[model.weighed.body]] = inertial(model, t, _rows(model, q), _rows(model, u))[1]
+    return power
 
 
 def _constant_work(model: Model, way: Array) -> Array:

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.analysis.balanced_forces import Balanced, Mechanism, modes_in_force
+from watchsim.analysis.balanced_forces import Balanced, Mechanism, inertial, modes_in_force
 from watchsim.mechanism.backlash import rack_ways
 from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.scene.roles import loads
@@ -290,7 +290,9 @@ def bearing_friction(run: Trajectory, times: Array) -> Array:
     q, u = absolute(compiled, q, False), absolute(compiled, u, True)
     dry = np.zeros(q.shape)
     for in_force, rows in modes_in_force(run, times).items():
-        dry[rows] = mechanism.rubbed(mechanism.balanced(times[rows], q[rows], u[rows], dict(in_force)), q[rows], u[rows])
+        dry[rows] = mechanism.rubbed(
+            mechanism.balanced(times[rows], q[rows], u[rows], dict(in_force)), times[rows], q[rows], u[rows]
+        )
     return dry
 
 
@@ -334,7 +336,8 @@ def _pivots(
         moment = np.stack((c * load.moment[0] - s * load.moment[1], s * load.moment[0] + c * load.moment[1]), axis=1)
         change = turn[:, None] * np.stack((-moment[:, 1], moment[:, 0]), axis=1) - (spin * spin)[:, None] * moment
         pressed = np.einsum("k,nkx->nx", sign, loads_found.pressed) + sum(one.force for one in meshed if one.body in own)
-        yield body.name, change - load.mass * np.array(run.scene.gravity) - pressed
+        shaken = inertial(compiled.model, motion.t, motion.q, motion.u, i)[0]
+        yield body.name, change - load.mass * np.array(run.scene.gravity) - shaken - pressed
 
 
 def _drives(run: Trajectory, compiled: Compiled, load: Array, a: Array) -> Iterator[tuple[str, Array]]:

@@ -13,12 +13,13 @@ import math
 
 from watchsim.contact.gaps import BACKWARD, FORWARD
 from watchsim.dynamics.forces import line_spring_pull
+from watchsim.dynamics.moving_frame import inertial_on
 from watchsim.jit import kernel
 from watchsim.tolerances import LOAD_ROUGH, LOAD_SETTLED
 
 
 @kernel
-def begin_loads(model, q, u, system):
+def begin_loads(model, t, q, u, system):
     """What bearings carry without contacts and angular acceleration, and the arms by which that acts; friction as poised."""
     for p in range(len(model.bearings)):
         bearing = model.bearings[p]
@@ -28,9 +29,10 @@ def begin_loads(model, q, u, system):
         c, s = math.cos(angle), math.sin(angle)
         x, y = c * bearing.moment_x - s * bearing.moment_y, s * bearing.moment_x + c * bearing.moment_y
         fx, fy = line_spring_pull(model, bearing.body, q, u)
+        ix, iy = inertial_on(model, bearing.body, t, q, u)
         system.arm[p, 0], system.arm[p, 1] = x, y
-        system.pull[p, 0] = -u[i] * u[i] * x - bearing.weight_x - fx
-        system.pull[p, 1] = -u[i] * u[i] * y - bearing.weight_y - fy
+        system.pull[p, 0] = -u[i] * u[i] * x - bearing.weight_x - fx - ix
+        system.pull[p, 1] = -u[i] * u[i] * y - bearing.weight_y - fy - iy
         system.dry[i] = model.coordinates[i].coulomb
 
 

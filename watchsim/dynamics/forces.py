@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from watchsim.contact.cell_lookup import along
 from watchsim.contact.gaps import BACKWARD, FORWARD, OPEN, STICK, contact_kinematics, place, shape_of_contact
+from watchsim.dynamics.moving_frame import add_inertial_forces, inertial_power, next_jolt
 from watchsim.jit import entry, hot_kernel, kernel
 from watchsim.model import FREE, OVER_TIME, PIVOT, REPEATED, SLIDE, resistance
 from watchsim.tolerances import KNOT_ROUNDING
@@ -341,6 +342,8 @@ def forces(model, t, q, u, out_h):
         out_h[joint.coordinate] += torque
         push_back(model, joint.on, torque, out_h)
     add_line_springs(model, q, u, out_h)
+    if len(model.shocks) > 0:
+        add_inertial_forces(model, t, q, u, out_h)
     for j in range(len(model.tables)):
         table, force = model.tables[j], table_force(model, j, t, q)
         out_h[table.coordinate] += force
@@ -371,6 +374,8 @@ def drive_power(model, t, q, u):
         power += along(u, table.coordinate, table.on) * force
         if table.on >= 0 and model.coordinates[table.on].driven:
             power += u[table.on] * force
+    if len(model.shocks) > 0:
+        power += inertial_power(model, t, q, u)
     return power + line_spring_drive(model, q, u)
 
 
@@ -414,7 +419,7 @@ def stored_energy(model, q, u):
 @kernel
 def next_knot(model, t):
     """Time of the first knot after t of all tables over time; infinity if there is none. A step must not jump over it."""
-    first = math.inf
+    first = next_jolt(model, t)
     for j in range(len(model.tables)):
         table = model.tables[j]
         if table.over < OVER_TIME:

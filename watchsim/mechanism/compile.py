@@ -16,6 +16,7 @@ from watchsim.contact.cell_frames import angle_of
 from watchsim.contact.cells import choose_cells
 from watchsim.mechanism.backlash import with_racks
 from watchsim.mechanism.contacts import coordinates_of_lines, declared_contacts, features, line_springs, near_contacts
+from watchsim.mechanism.shaken import feels, shaken
 from watchsim.model import (
     BEARING,
     BODY,
@@ -344,7 +345,13 @@ def compiled_anew(scene: Scene, prefilter: bool) -> Compiled:
         # The cells stay, so that time is parted in the same way; only their answers are not used.
         near = np.arange(len(contacts))
         pairs.near_start, pairs.near_stop, pairs.listed = pairs.start, pairs.stop, 0
-    parts = (bodies, *forced.parts, primitives, contacts, laws, pairs, near)
+    shocks, jolts, heavy = shaken(scene, weigh(scene.bodies, riding), bodies)
+    for row in heavy:
+        turns, loaded = any(one.turns for one in scene.shocks), forced.parts[0].loaded[bodies[row.body].first]
+        if loaded or feels(row, scene.bodies[row.body].motion, turns):
+            first = int(bodies[row.body].first)
+            forced.parts[0].linear[first : first + (3 if bodies[row.body].motion == FREE else 1)] = 0
+    parts = (bodies, *forced.parts, primitives, contacts, laws, pairs, near, shocks, jolts, heavy)
     model = Model(*(frozen(part) for part in parts))
     own = [(body.name, bond) for body, bond in zip(scene.bodies, bound, strict=True) if body.geared and body.name not in named]
     geared = tuple((int(bodies[bond.to].first), bond.given, bond.shift) for _, bond in own)

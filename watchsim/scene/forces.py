@@ -136,6 +136,28 @@ class Bearing:
 
 
 @dataclass(frozen=True, slots=True)
+class Shock:
+    """How the case is accelerated from `at` (s) on: a half sine over `duration` (s), or between `rows`.
+
+    acceleration  of its point `about` (m), at the most, m/s², in the directions of the movement
+    turn          of the case, at the most, rad/s²
+    rows          (s since `at`, m/s², m/s², rad/s²), with straight lines between them
+    """
+
+    at: float
+    duration: float
+    acceleration: Point = (0.0, 0.0)
+    turn: float = 0.0
+    about: Point = (0.0, 0.0)
+    rows: tuple[tuple[float, float, float, float], ...] = ()
+
+    @property
+    def turns(self) -> bool:
+        """True if the case turns."""
+        return self.turn != 0.0 or any(row[3] for row in self.rows)
+
+
+@dataclass(frozen=True, slots=True)
 class SlipLaw:
     """How friction depends on the speed v of slip: friction − drop (1 − exp(−v / decay)) + rise v.
 

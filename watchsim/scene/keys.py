@@ -338,6 +338,17 @@ BEARING: Keys = {
         limits=_not_negative(),
     ),
 }
+SHOCK: Keys = {
+    "at": Key(units.TIME, doc="when it begins", limits=_not_negative("a run begins at 0"), absent="0 s"),
+    "acceleration": Key(units.ACCELERATION, doc="of the case, the height of a half sine", limits=_not_negative()),
+    "direction": _angle("of that acceleration, in the movement"),
+    "duration": Key(units.TIME, doc="of the half sine", limits=_above_zero("it is how long the half sine lasts")),
+    "turn": Key(units.SPIN_UP, doc="angular acceleration of the case, the height of a half sine as long"),
+    "about": _length("the point of the case that is accelerated so, and about which it turns", form=PAIR, absent="the origin"),
+    "file": _text(
+        "a recording instead of a half sine: CSV with the columns t_s, ax_m_s2, ay_m_s2 and, if it turns, turn_rad_s2"
+    ),
+}
 GEAR: Keys = {
     "between": Key(doc="two bodies", form=TEXTS, required=True),
     "ratio": _number("how far the second goes for one unit of the first", required=True),
@@ -468,6 +479,7 @@ LISTED = {  # [[name]]
     "torques": TORQUE,
     "damping": DAMPING,
     "bearings": BEARING,
+    "shocks": SHOCK,
     "contacts": CONTACT,
     "gears": GEAR,
     "line_springs": LINE_SPRING,

@@ -21,6 +21,7 @@ from watchsim.scene.read_bodies import read_bodies
 from watchsim.scene.read_contacts import read_contacts
 from watchsim.scene.read_forces import read_bearings, read_damping, read_line_springs, read_springs, read_torques
 from watchsim.scene.read_settings import read_expectations, read_heading, read_run, read_timegrapher
+from watchsim.scene.read_shocks import read_shocks
 from watchsim.scene.read_tolerances import read_tolerances
 from watchsim.scene.read_trains import note_carriers, read_gears, with_trains
 from watchsim.scene.read_watch import in_state, read_watch
@@ -68,6 +69,7 @@ def from_mapping(
     bearings = read_bearings(mapping, bodies, faults)
     contacts = read_contacts(mapping, bodies, sound, heading.tangential_law, faults)
     line_springs = read_line_springs(mapping, bodies, faults)
+    shocks = read_shocks(mapping, folder, faults)
     note_carriers(bodies, damping, contacts, faults)
     duration, record, tolerance = read_run(mapping, faults)
     lift_angle, nominal = read_timegrapher(mapping, faults)
@@ -85,6 +87,7 @@ def from_mapping(
         gears=geared.gears,
         rigid_gears=geared.rigid,
         line_springs=line_springs,
+        shocks=shocks,
         gravity=heading.gravity,
         tangential_law=heading.tangential_law,
         nu=heading.nu,

@@ -17,7 +17,7 @@ from watchsim.drawing.findings import Finding
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Point
 from watchsim.scene.errors import Fault, SceneError
-from watchsim.scene.forces import Bearing, Contact, Damping, LineSpring, Spring, Torque
+from watchsim.scene.forces import Bearing, Contact, Damping, LineSpring, Shock, Spring, Torque
 from watchsim.scene.solids import Solid
 from watchsim.units import LENGTH, Dimension, known_unit, show
 
@@ -327,6 +327,7 @@ class Scene:
     lift_angle      rad; `nominal` (Hz) is what the rate is measured against. None where the scene says nothing
     expect          numbers that a run promises
     gears           with play; those without are `Body.geared`, and, two by two, `rigid_gears`
+    shocks          how the case is accelerated and turned
     line_springs    between points of two bodies, or of a body and the movement
     tolerances      within which limits its numbers are made; `correlated` which of them go together
     path, source    the file, and the TOML mapping that it holds
@@ -354,6 +355,7 @@ class Scene:
     rigid_gears: tuple[Gear, ...] = ()
     line_springs: tuple[LineSpring, ...] = ()
     bearings: tuple[Bearing, ...] = ()
+    shocks: tuple[Shock, ...] = ()
     tolerances: tuple[Tolerance, ...] = field(default=(), compare=False)
     correlated: tuple[Correlation, ...] = field(default=(), compare=False)
     path: Path | None = field(default=None, compare=False)

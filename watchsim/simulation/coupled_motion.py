@@ -15,6 +15,7 @@ from watchsim.dynamics.bearings import LOAD_ROUNDS, begin_loads, has_settled, la
 from watchsim.dynamics.delassus import apply, drive_through_contacts, fill_delassus, own_acceleration
 from watchsim.dynamics.forces import add_drag, add_loads, damping_power, drag_power, drive_power, forces
 from watchsim.dynamics.friction import jams
+from watchsim.dynamics.moving_frame import is_shaken
 from watchsim.dynamics.redundant import keep_independent, solve_small, unit_scale
 from watchsim.jit import hot_kernel, kernel
 from watchsim.model import FREE, OVER_TIME, REPEATED
@@ -370,6 +371,11 @@ def find_sleepers(model, regime, options, time, event, f, out_u, out_a):
     for j in range(len(model.tables)):
         if _will_change(model, model.tables[j], time):
             _wake(label, label[model.tables[j].coordinate], regime.awake)
+    if is_shaken(model, time):
+        for k in range(len(model.weighed)):
+            first = model.bodies[model.weighed[k].body].first
+            if not model.coordinates[first].linear:
+                _wake(label, label[first], regime.awake)
     for i in range(n):
         if model.coordinates[i].driven:
             _wake(label, label[i], regime.awake)
@@ -504,7 +510,7 @@ def motion(model, regime, options, t, smooth, out_counts):
     q, u = smooth.y[:n], smooth.y[n : 2 * n]
     closed, out = smooth.closed, smooth.dy
     forces(model, t, q, u, system.h)
-    begin_loads(model, q, u, system)
+    begin_loads(model, t, q, u, system)
     add_drag(system.dry, regime.grip, system.h)
     for b in range(len(model.bodies)):
         if smooth.engaged[b]:

@@ -243,7 +243,7 @@ def finish_event(model, state, f, options, scratch, record):
     place(model, state.q, state.u, event.pose)
     forces(model, state.clock.time, state.q, state.u, system.h)
     fill_inverse(model, state.regime.grip, system.inverse)
-    begin_loads(model, state.q, state.u, system)
+    begin_loads(model, state.clock.time, state.q, state.u, system)
     add_drag(system.dry, state.regime.grip, system.h)
     if len(model.bearings) > 0:
         settle_loads(model, state.regime, (f, state.instant.lenience), event.pose, rest, system, work.modes)

@@ -51,7 +51,7 @@ def collide(model, state, island, m, options, jam_speed, scratch, record):
     """
     work, event, room = scratch.work, scratch.event, scratch.impact
     copy(state.u, room.before)
-    begin_loads(model, state.q, state.u, work.system)
+    begin_loads(model, state.clock.time, state.q, state.u, work.system)
     for i in range(m):
         room.restitution[i] = law_of(model, event.closed.ids[i]).restitution
     ended, ends = False, state.clock.time

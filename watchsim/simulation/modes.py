@@ -68,7 +68,7 @@ def decide(model, state, island, m, options, system, problem, event, out_grip):
     """
     r = resting(model, m, event.closed, event.pose, event.zero, event.rest)
     problem.last.jammed = 0
-    begin_loads(model, state.q, state.u, system)
+    begin_loads(model, state.clock.time, state.q, state.u, system)
     for number in range(LOAD_ROUNDS):
         forces(model, state.clock.time, state.q, state.u, system.h)
         set_grips(model, state.u, event.label, island, options, out_grip)

@@ -37,6 +37,7 @@ from watchsim.dynamics.forces import (
     stretch,
     table_force,
 )
+from watchsim.dynamics.moving_frame import add_inertial_forces
 from watchsim.jit import by_reference, entry, inlined, kernel
 from watchsim.model import CellsRef, Model, ModelRef, blank
 from watchsim.simulation.closed_contacts import is_immovable
@@ -217,6 +218,8 @@ def _free_velocity(model, state, h, work):
         joint = model.joints[j]
         work.force[joint.coordinate] += joint.force
         push_back(model, joint.on, joint.force, work.force)
+    if len(model.shocks) > 0:
+        add_inertial_forces(model, state.clock.time + 0.5 * h, work.q, work.u, work.force)
     for i in range(len(work.u)):
         coordinate = model.coordinates[i]
         change = 0.5 * h * work.damping[i] + 0.25 * h * h * coordinate.stiffness
@@ -276,7 +279,7 @@ def act(model, state, options, m, h, work, out_u):
         solve_percussions(state, m, bearings, work)
         copy(work.free, out_u)
         push(work, m, bearings, laws.P, out_u)
-        if within_loads(model, m, h, laws.P, work.u, out_u, work):
+        if within_loads(model, m, (state.clock.time + 0.5 * h, h), laws.P, work.u, out_u, work):
             break
     rates_of(work, m, bearings, work.u, laws.b)
     rates_of(work, m, bearings, out_u, work.rates)

@@ -22,6 +22,7 @@ from watchsim.dynamics.delassus import (
 )
 from watchsim.dynamics.forces import line_spring_pull
 from watchsim.dynamics.friction import friction_at, friction_bound, law_of, size_class
+from watchsim.dynamics.moving_frame import inertial_on
 from watchsim.dynamics.redundant import solve_small
 from watchsim.jit import by_reference, kernel
 from watchsim.model import PG1996, SHIFTED
@@ -299,20 +300,22 @@ LOAD_SWEEPS, LOAD_STEADY = 50, 1e-12
 
 
 @kernel
-def within_loads(model, m, h, P, before, after, work):
+def within_loads(model, m, step, P, before, after, work):
     """Set how far the percussions of bearings with a load may go, from P; True if they went no further or less before.
 
-    `before`, `after`: the velocities that P leads from and to, in the time h (s), 0 at an impact.
+    `before`, `after`: the velocities that P leads from and to; `step`: (the time at the middle of the step, its length, 0 at an
+    impact), s.
     """
-    steady = True
+    steady, (time, h) = True, step
     for k in range(len(model.bearings)):
         bearing = model.bearings[k]
         j, pose = bearing.coordinate, work.pose[bearing.body]
         mx, my = point_of(pose, bearing.moment_x, bearing.moment_y)
         fx, fy = line_spring_pull(model, bearing.body, work.q, work.foreseen)
+        ix, iy = inertial_on(model, bearing.body, time, work.q, work.foreseen)
         jump, turned = after[j] - before[j], h * (0.5 * (before[j] + after[j])) ** 2
-        x = -jump * my - turned * mx - h * (bearing.weight_x + fx)
-        y = jump * mx - turned * my - h * (bearing.weight_y + fy)
+        x = -jump * my - turned * mx - h * (bearing.weight_x + fx + ix)
+        y = jump * mx - turned * my - h * (bearing.weight_y + fy + iy)
         for i in range(m):
             contact, kin = model.contacts[work.closed.ids[i]], work.closed.kin[i]
             for side, primitive in ((-1.0, contact.a), (1.0, contact.b)):
@@ -340,7 +343,7 @@ def _settle_impact(model, state, m, work):
         solve_percussions(state, m, bearings, work)
         work.change[:] = 0.0
         push(work, m, bearings, work.laws.P, work.change)
-        if within_loads(model, m, 0.0, work.laws.P, work.foreseen, work.change, work):
+        if within_loads(model, m, (0.0, 0.0), work.laws.P, work.foreseen, work.change, work):
             return
 
 

@@ -24,8 +24,10 @@ from watchsim.model import (
     LAW,
     LINE_SPRING,
     PRIMITIVE,
+    SHOCK,
     TABLE,
     TANGENTIAL_CODE,
+    WEIGHED,
     Model,
     frozen,
     records,
@@ -72,13 +74,15 @@ class BareContacts:
             "joints": JOINT,
             "lines": LINE_SPRING,
             "bearings": BEARING,
+            "shocks": SHOCK,
+            "weighed": WEIGHED,
             "tables": TABLE,
             "primitives": PRIMITIVE,
             "pairs": BODY_PAIR,
         }
         parts = {name: records(dtype, 0) for name, dtype in none.items()}
         parts |= {"coordinates": coordinates, "contacts": contacts, "laws": laws}
-        parts |= {"knots": np.zeros((0, 2)), "near": np.zeros(0, np.int64)}
+        parts |= {"knots": np.zeros((0, 2)), "jolts": np.zeros((0, 6)), "near": np.zeros(0, np.int64)}
         return Model(**{name: frozen(part) for name, part in parts.items()})
 
     def take(self, contacts: list[int]) -> None:
