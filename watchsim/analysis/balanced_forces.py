@@ -122,7 +122,8 @@ def inertial(model: Model, t: Array, q: Array, u: Array, body: int = -1) -> tupl
     """What the motion of the case does: force on a body, N (n, 2), and power on each body of `model.weighed`, W (n, bodies)."""
     force, power = np.zeros((len(t), 2)), np.zeros((len(t), len(model.weighed)))
     if len(model.shocks):
-        inertial_rows(model, body, *(np.ascontiguousarray(values) for values in (t, q, u)), force, power)
+        t, q, u = (np.ascontiguousarray(values) for values in (t, q, u))
+        inertial_rows(model, body, t, q, u, force, power)
     return force, power
 
 
