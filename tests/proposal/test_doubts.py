@@ -111,11 +111,10 @@ def test_an_anchor_gets_a_lift_angle(name: str, tmp_path: Path) -> None:
     [
         ("swiss_lever", "whole", "lever and balance lie over each other"),
         ("cylinder", "whole", "wheel and balance lie over each other"),
-        ("cam", "whole", "follower cannot give way to cam by turning about its pivot"),
     ],
 )
 def test_what_a_flat_drawing_does_not_show_is_doubted(name: str, layers: str, words: str, tmp_path: Path) -> None:
-    """Surfaces of several heights on one layer, and a follower whose guide is no pivot."""
+    """Surfaces of several heights on one layer."""
     found = propose([assembly(scene_of(name), tmp_path / f"{name}.dxf", layers)])
     assert words in "".join(found.doubts)
 

@@ -85,6 +85,15 @@ def test_a_click_without_a_name_is_known_by_its_one_side(tmp_path: Path) -> None
     assert abs(simulate(load(tmp_path / "free"), 1.0).q[-1, 0]) < math.tau / 24  # the other way the click holds it
 
 
+def test_a_follower_whose_pivot_lies_behind_it_slides(tmp_path: Path) -> None:
+    """An eccentric lifts it by twice its eccentricity, 1.5 mm: at half a turn it stands highest."""
+    scene = written([assembly(scene_of("cam"), tmp_path / "a.dxf", "whole")], tmp_path / "out")
+    assert scene.body("follower").motion == "slide"
+    run = simulate(scene, 0.5)
+    height = run.q[:, run.slices["follower"].start]
+    assert float(height[-1] - height[0]) == pytest.approx(3e-3, abs=1e-6)
+
+
 def test_a_driven_finger_moves_a_star_on_against_its_jumper(tmp_path: Path) -> None:
     scene = written([assembly(scene_of("jumper"), tmp_path / "a.dxf", "body")], tmp_path / "out")
     run = simulate(scene, 3.0)
@@ -227,6 +236,14 @@ def test_no_drawing_of_our_own_brings_it_down(path: Path) -> None:
 
 BARE = {  # layers named after features alone, or not at all: parts by profile, each with its layers and its task
     "cam": {("CAM",): "driver", ("END", "SHAFT"): "click"},
+    "detent": {
+        ("TEETH",): "wheel",
+        ("BAR", "HORN", "HUB", "STONE"): "lever",
+        ("LEAF",): "lever",  # the passing spring: a body of its own, and doubted
+        ("DISCHARGE", "IMPULSE_STONE", "RIM", "ROLLER", "TABLE"): "oscillator",
+        ("SCREW",): "fixed",
+    },
+    "jumper": {("ARM#1", "HUB#1", "PIN"): "driver", ("ARM#1", "BEAK", "FOOT"): "click", ("HUB#1", "STAR"): "wheel"},
     "geneva_stop": {("DISC", "PIN", "PLATE"): "driver", ("CROSS",): "wheel"},
     "duplex": {("IMPULSE", "RESTING"): "wheel", ("PALLET", "RIM", "ROLLER"): "oscillator"},
     "pin_wheel": {("PINS", "RIM"): "wheel", ("ANCHOR", "BOB", "PALLETS", "ROD"): "oscillator"},

@@ -9,7 +9,6 @@ import itertools
 from collections.abc import Iterator, Sequence
 
 from watchsim.proposal.facing import Facing
-from watchsim.proposal.parts import nose_of
 from watchsim.proposal.pieces import CLICK, DRIVER, LEVER, NONE, OSCILLATOR, WHEEL
 from watchsim.proposal.roles import Role, first_of
 
@@ -23,7 +22,6 @@ def doubts(roles: Sequence[Role], facings: Sequence[Facing], apart: bool, leans:
         found += [f"{role.name} meets nothing that moves or holds it: {_cure(role)}" for role in moving if role.name not in met]
         found += _chain(roles, facings)
         found += _heights(moving, facings)
-        found += _followers(roles)
     found += _centres(moving)
     wheel = first_of(roles, WHEEL)
     stopped = any(role.task in (LEVER, OSCILLATOR, CLICK) for role in roles)
@@ -96,22 +94,6 @@ def _heights(moving: Sequence[Role], facings: Sequence[Facing]) -> Iterator[str]
             yield (
                 f"{one.name} and {other.name} lie over each other, and a flat drawing does not show which of their surfaces "
                 f"are at one height; {taken}. Give surfaces that touch layers of their own, such as TEETH, STONES, FORK and PIN"
-            )
-
-
-FLAT = 0.2  # share of its motion: with less a follower cannot give way
-
-
-def _followers(roles: Sequence[Role]) -> Iterator[str]:
-    """What cannot be lifted by a cam when it turns about its pivot slides, or its pivot lies elsewhere."""
-    cam = first_of(roles, DRIVER)
-    if cam is None or cam.part.centre is None or first_of(roles, WHEEL) is not None:
-        return
-    for role in roles:
-        if role.task == CLICK and nose_of(role.part, cam.part).share < FLAT:
-            yield (
-                f"{role.name} cannot give way to {cam.name} by turning about its pivot, which lies behind it: where it is "
-                'guided straight, write motion = "slide" with its direction, a mass and a spring in N/m'
             )
 
 

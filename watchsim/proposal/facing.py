@@ -25,6 +25,7 @@ from watchsim.proposal.pieces import (
     Piece,
     Region,
     facing_by_name,
+    ring,
     united,
 )
 from watchsim.proposal.roles import Role
@@ -151,15 +152,6 @@ def about(points: Floats, centre: Point, angle: float) -> Floats:
 def _region(piece: Piece, points: Floats) -> Region:
     ends = np.cumsum([len(ring) for ring, hole in piece.rings if not hole])
     return united(part for ring in np.split(points, ends[:-1]) for part in material([(ring, False)]))
-
-
-def ring(points: Floats, centre: Point) -> tuple[float, float]:
-    """The least and the largest distance of an outline from a point."""
-    start, step = points[:-1] - np.array(centre), np.diff(points, axis=0)
-    length = np.maximum((step**2).sum(axis=1), 1e-30)
-    share = np.clip(-(start * step).sum(axis=1) / length, 0.0, 1.0)
-    nearest = np.hypot(*(start + share[:, None] * step).T).min()
-    return float(nearest), float(np.hypot(*(points - np.array(centre)).T).max())
 
 
 def clearance(facings: Sequence[Facing], angles: dict[str, float]) -> float:

@@ -105,6 +105,7 @@ def are_apart(one: Part, other: Part) -> bool:
 # Where pieces belong that show no centre: to what they lie in, or next to.
 
 INSIDE = 0.3  # of a piece in the material of a body: it belongs to it
+HUBBED = 0.1  # the same of a hub, which a bar reaches with its end
 BORDER = 0.2  # of a piece's outline on that of a body: it belongs to it
 CLOSE = 0.01  # of the whole: an outline without a name as near as this to a body belongs to it
 BESIDE = 1e-6  # m: outlines this close lie on each other
@@ -132,7 +133,7 @@ def take_in_misnamed(parts: list[Part]) -> None:
         if body is not None and body.centre is not None and _in_each_other(part, body) >= INSIDE:
             kind = body.kind
             unite(body, part, "they lie in each other, and no other part is of the kind that its name speaks of")
-            body.kind = kind
+            body.kind = CLICK if part.kind == CLICK and kind == LEVER else kind  # an arm with a beak
             parts.remove(part)
 
 
@@ -141,10 +142,15 @@ def _take_in_some(parts: list[Part]) -> bool:
     for part in [part for part in parts if part.centre is None and part.kind != FIXED]:
         around = [other for other in parts if other.centre is not None and not are_apart(part, other)]
         body = max(around, key=lambda other: (_in_each_other(part, other), -other.area), default=None)
-        if body is not None and _in_each_other(part, body) >= INSIDE:
+        if body is not None and _in_each_other(part, body) >= (HUBBED if _is_hub(body) else INSIDE):
             unite(body, part, "they lie in each other")
             parts.remove(part)
     return len(parts) < before
+
+
+def _is_hub(body: Part) -> bool:
+    """Nothing but discs without a name: what reaches into it is fixed to it."""
+    return not body.hints and all(piece.is_disc for piece in body.pieces)
 
 
 def _in_each_other(part: Part, body: Part) -> float:

@@ -484,11 +484,20 @@ def centre_of(piece: Piece, marks: Sequence[Mark]) -> Centre | None:
         bored = hole is not None and math.dist(hole.at, symmetry.centre) <= BORED * symmetry.outer
         at = mark.at if mark is not None else hole.at if hole is not None and bored else symmetry.centre
         return Centre(at, SURE, f"the outline has {symmetry.fold}-fold rotational symmetry about it", mark)
-    inside = [mark for mark in marks if holds(piece, mark.at)]
+    inside = [mark for mark in marks if holds(piece, mark.at) or ring(piece.points, mark.at)[0] <= SAME]
     if len(inside) == 1:
-        why = f"the one point of layer {inside[0].layer} that lies in its outline"
+        why = f"the one point of layer {inside[0].layer} that lies in or on its outline"
         return Centre(inside[0].at, USUAL, why, inside[0])
     return None if marks else hole_of(piece)
+
+
+def ring(points: Floats, centre: Point) -> tuple[float, float]:
+    """The least and the largest distance of an outline from a point."""
+    start, step = points[:-1] - np.array(centre), np.diff(points, axis=0)
+    length = np.maximum((step**2).sum(axis=1), 1e-30)
+    share = np.clip(-(start * step).sum(axis=1) / length, 0.0, 1.0)
+    nearest = np.hypot(*(start + share[:, None] * step).T).min()
+    return float(nearest), float(np.hypot(*(points - np.array(centre)).T).max())
 
 
 def is_toothed(symmetry: Turned) -> bool:

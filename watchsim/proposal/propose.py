@@ -147,6 +147,14 @@ def _body(plan: Plan, role: Role) -> Iterator[str]:
         why = f"it turns {'clockwise' if plan.direction < 0 else 'counter-clockwise'}, evenly, and moves {moved}"
         yield plan.guess(f"{key}.velocity", _text(f"{60 * plan.direction} rpm"), why)
         return
+    axis = next((spring.axis for spring in plan.amounts.clicks if spring.body == role.name), None)
+    if axis is not None:
+        yield 'motion = "slide"'
+        why = "it cannot give way to the cam by turning about its pivot, which lies behind it: it is guided straight"
+        yield plan.guess(f"{key}.axis", f"[{axis[0]:.6g}, {axis[1]:.6g}]", why)
+        mass = plan.amounts.mass[role.name]
+        yield plan.guess(f"{key}.mass", _text(f"{1e3 * mass.value:.3g} g"), mass.why)
+        return
     inertia = plan.amounts.inertia[role.name]
     yield plan.guess(f"{key}.inertia", _text(f"{1e10 * inertia.value:.3g} mg·cm²"), inertia.why)
 
@@ -186,10 +194,12 @@ def _forces(plan: Plan) -> Iterator[str]:
         yield plan.guess("damping.0.q_factor", f"{amounts.q_factor.value:g}", amounts.q_factor.why)
     for k, spring in enumerate(amounts.clicks):
         rest = plan.start.angles.get(spring.body, 0.0) + spring.way
+        turned, slid = f"{1e6 * spring.stiffness.value:.3g} µN·m/rad", f"{1e-3 * spring.stiffness.value:.3g} N/mm"
         yield from ("", "[[springs]]", f"body = {_text(spring.body)}")
-        yield plan.guess(f"springs.{k}.stiffness", _text(f"{1e6 * spring.stiffness.value:.3g} µN·m/rad"), spring.stiffness.why)
-        why = "in the teeth: it presses the click on the wheel"
-        yield plan.guess(f"springs.{k}.rest", _text(f"{math.degrees(rest):.6g}°"), why)
+        yield plan.guess(f"springs.{k}.stiffness", _text(slid if spring.axis else turned), spring.stiffness.why)
+        why = "in the cam: it presses the follower on it" if spring.axis else "in the teeth: it presses the click on the wheel"
+        place = _text(f"{1e3 * rest:.6g} mm" if spring.axis else f"{math.degrees(rest):.6g}°")
+        yield plan.guess(f"springs.{k}.rest", place, why)
     if amounts.driven is not None and amounts.torque is not None and amounts.turned is None:
         value = plan.direction * amounts.torque.value
         yield from ("", "[[torques]]", f"body = {_text(amounts.driven)}")

@@ -11,7 +11,7 @@ import itertools
 import math
 from collections import Counter
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -19,9 +19,9 @@ from watchsim.drawing.write import dxf_text
 from watchsim.geometry.primitives import Point
 from watchsim.geometry.solids import section
 from watchsim.mechanism.overlap import placed
-from watchsim.proposal.facing import Facing, clearance, ring, turns_fully
+from watchsim.proposal.facing import Facing, clearance, turns_fully
 from watchsim.proposal.parts import Part, nose_of, toothing
-from watchsim.proposal.pieces import CLICK, DRIVER, LEVER, OSCILLATOR, WHEEL, Floats, Piece, Source, tokens
+from watchsim.proposal.pieces import CLICK, DRIVER, LEVER, OSCILLATOR, WHEEL, Floats, Piece, Source, ring, tokens
 from watchsim.proposal.roles import Role, first_of, plain
 
 STEEL = 7850.0  # kg/m³
@@ -36,6 +36,7 @@ HEAVY = 100.0  # times the wheel's inertia: an anchor with less is drawn without
 STEPPED = 8  # teeth: a wheel with fewer is driven step by step, as in a Geneva drive
 LIFTING = 0.2  # of the drive's work that lifts a click
 BENT = 0.5  # rad by which the spring of a click is bent at the start: its force hardly changes
+FLAT = 0.2  # share of its motion that leads to the cam: what has less does not turn but slides
 TURNS = 1.0  # per second, of what has nothing to hold it back but damping
 
 
@@ -49,11 +50,15 @@ class Amount:
 
 @dataclass(frozen=True)
 class ClickSpring:
-    """What presses a click into the teeth: stiffness in N·m/rad, and the way (rad) from its start to its rest."""
+    """What presses a click into the teeth: stiffness in N·m/rad, and the way (rad) from its start to its rest.
+
+    What is guided straight has an `axis`, away from the cam; its spring is in N/m and m.
+    """
 
     body: str
     stiffness: Amount
     way: float
+    axis: Point | None = None
 
 
 @dataclass(frozen=True)
@@ -66,6 +71,7 @@ class Amounts:
     driven: str | None  # the body that the torque turns
     clicks: tuple[ClickSpring, ...] = ()
     lift: Amount | None = None  # rad: the oscillator's way between the sounds from which its amplitude follows
+    mass: dict[str, Amount] = field(default_factory=dict)  # kg, of what slides
     turned: str | None = None  # the body that turns evenly, as a finger does that moves a star on against its jumper
 
 
@@ -85,9 +91,11 @@ def amounts_of(roles: Sequence[Role], size: float, swing: float) -> Amounts:
         torque = Amount(1e-6 if watch else 1e-4, "nothing in the drawing says how strong the drive is")
         slow = Amount(torque.value / (2.0 * math.pi * TURNS), f"so that {driven} comes to about {TURNS:g} turn per second")
         springs = _clicks(roles, wheel, torque.value)
+        sliding = [role for role in roles if any(spring.axis and spring.body == role.name for spring in springs)]
+        mass = {role.name: Amount(STEEL * thick * role.part.area, plate) for role in sliding}
         if driven is None:
-            return Amounts(inertia, None, None, None, None, None, springs, turned=turned)
-        return Amounts(inertia, None, None, torque, slow, driven, springs, turned=turned)
+            return Amounts(inertia, None, None, None, None, None, springs, None, mass, turned)
+        return Amounts(inertia, None, None, torque, slow, driven, springs, None, mass, turned)
     beats = Amount(BEATS[watch], f"usual for {'a watch' if watch else 'a clock'} of this size ({1e3 * size:.3g} mm)")
     q = Amount(Q_FACTOR[watch], "usual; the escapement's own losses come on top")
     torque_amount = None
@@ -142,13 +150,23 @@ def _clicks(roles: Sequence[Role], wheel: Role | None, torque: float) -> tuple[C
         teeth, nose = toothing(under.part), nose_of(role.part, under.part)
         outline = max(under.part.pieces, key=lambda piece: piece.area).points
         low, high = ring(outline, under.part.centre.at) if teeth is None else (teeth.inner, teeth.outer)
-        lift = (high - low) / nose.arm  # rad, about
-        bent = max(BENT, 2.0 * lift)
+        slides = teeth is None and nose.share < FLAT
+        lift = (high - low) / (1.0 if slides else nose.arm)  # m, or rad, about
+        bent = 2.0 * lift if slides else max(BENT, 2.0 * lift)
         moment = LIFTING * torque * 2.0 * math.pi / (teeth.fold if teeth is not None else 1) / lift
         over = "a tooth" if teeth is not None else under.name
         why = f"lifting it over {over} takes about {LIFTING:.0%} of the drive's work"
-        found.append(ClickSpring(role.name, Amount(moment / bent, why), nose.inward * bent))
+        axis = _away(role.part, under.part) if slides else None
+        found.append(ClickSpring(role.name, Amount(moment / bent, why), -bent if slides else nose.inward * bent, axis))
     return tuple(found)
+
+
+def _away(part: Part, cam: Part) -> Point:
+    """The direction from a cam's pivot to that of its follower."""
+    assert part.centre is not None and cam.centre is not None
+    (x, y), (x0, y0) = part.centre.at, cam.centre.at
+    far = math.dist((x, y), (x0, y0))
+    return (x - x0) / far, (y - y0) / far
 
 
 def _plate(part: Part, thickness: float) -> float:
