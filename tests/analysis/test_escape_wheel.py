@@ -14,9 +14,10 @@ from render.fake_runs import disc_run, watch_run
 from watchsim.analysis.escape_wheel import advance, missed_beats, progress, standstill, why_no_timing
 from watchsim.analysis.summary import summary, summary_text
 from watchsim.analysis.timing import beats, is_recorded
-from watchsim.commands.pictures import filmed, last_beats
+from watchsim.commands.pictures import filmed
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Line
+from watchsim.render.opening import last_beats
 from watchsim.scene.roles import Roles, drive_direction, keeps_time, partners, pitch, roles
 from watchsim.scene.teeth import tooth_count
 from watchsim.simulation.state import EventKind

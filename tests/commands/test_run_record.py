@@ -11,8 +11,8 @@ import pytest
 from watchsim.cli import main
 from watchsim.commands.console import BAD_INPUT, FINE
 from watchsim.commands.inputs import load_scene, record_size, room_for
-from watchsim.commands.pictures import last_beats
 from watchsim.paths import profiles_dir
+from watchsim.render.opening import last_beats
 from watchsim.results.folder import read_results
 from watchsim.simulation.simulate import simulate
 from watchsim.storage.destination import LEAST_ROOM

@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from watchsim.analysis.flows import pair_layers
 from watchsim.analysis.forces import Forces, forces, just_before
 from watchsim.analysis.phases import Phase
-from watchsim.analysis.timegrapher import noises
+from watchsim.analysis.sound import blows
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc
 from watchsim.pages.solids import packed_solids
@@ -347,7 +347,7 @@ def _one(run: Trajectory, event: Any, names: list[str]) -> str:
 
 def heard(run: Trajectory, window: Window) -> dict[str, str]:
     """Noises of the window: t (s) and loudness, 1 for the loudest; energies (J) go with the square of it."""
-    times, energies = noises(run, *window)
+    times, energies = blows(run, *window)
     energies = np.maximum(energies, 0.0)
     loudest = float(energies.max(initial=0.0))
     if loudest <= 0.0:

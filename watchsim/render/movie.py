@@ -20,8 +20,7 @@ from numpy.typing import NDArray
 
 from watchsim.analysis.phases import Phase
 from watchsim.analysis.phases import phases as named_phases
-from watchsim.analysis.sound import Score, write_score
-from watchsim.analysis.timegrapher import noises
+from watchsim.analysis.sound import Score, blows, write_score
 from watchsim.escapement.turn import Turn
 from watchsim.render.encoder import (
     AUTO,
@@ -207,7 +206,7 @@ class Film:
 
 def soundtrack(run: Trajectory, plan: Plan) -> Score:
     """The blows within a plan, in seconds of the film. ValueError where there are none."""
-    times, energies = noises(run)
+    times, energies = blows(run)
     heard = (energies > 0.0) & (times >= plan.times[0]) & (times <= plan.times[-1])
     if not heard.any():
         raise ValueError("sound: nothing sounds between the first and the last picture, or no impacts were kept")

@@ -12,8 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from watchsim.analysis.flows import pair_layers
-from watchsim.analysis.sound import TONES
-from watchsim.analysis.timegrapher import noises
+from watchsim.analysis.sound import TONES, blows
 from watchsim.analysis.timeline import RESTING
 from watchsim.render import style
 from watchsim.render.force_plot import beat_spans
@@ -46,7 +45,7 @@ def plot_sound(run: Trajectory, window: Sequence[float] | None = None, width: fl
     """
     cycle = style.shown(run, window)
     spans = [cycle.window] if window is not None else beat_spans(run, cycle)
-    heard = [noises(run, span[0] - RUNG_OUT, span[1]) for span in spans]
+    heard = [blows(run, span[0] - RUNG_OUT, span[1]) for span in spans]
     loudest = max((float(energies.max(initial=0.0)) for _, energies in heard), default=0.0)
     if loudest <= 0.0:
         raise ValueError("nothing sounds there, or no impacts were kept")
