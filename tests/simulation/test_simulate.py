@@ -23,7 +23,7 @@ from watchsim.contact.cells import forget
 from watchsim.mechanism.compile import compile_scene
 from watchsim.scene.forces import Spring, Torque
 from watchsim.scene.scene import Body, Recording, Scene
-from watchsim.simulation.run_end import ledger, ledger_fails, usual_energy
+from watchsim.simulation.run_end import ledger, ledger_fails, turned_over, usual_energy
 from watchsim.simulation.runner import Pace
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.state import EventKind, Stop
@@ -120,7 +120,7 @@ def test_the_prefilter_changes_no_bit(name: str) -> None:
     fast = simulate(profile(name), 0.3)
     slow = simulate(profile(name), 0.3, prefilter=False)
     assert slow.counts["cells"] == 0 < fast.counts["cells"]
-    assert slow.counts["gap_evaluations"] > 5 * fast.counts["gap_evaluations"]
+    assert slow.counts["gap_evaluations"] > fast.counts["gap_evaluations"]
     for field in ("t", "q", "u", "a", "events"):
         assert np.array_equal(getattr(fast, field), getattr(slow, field))
 
@@ -353,7 +353,7 @@ NOTHING = model((0.0, 0.0, 1.0, 1.0, 1.0, 0.0))
 
 
 def test_what_comes_in_is_stored_or_lost_but_for_the_residual() -> None:
-    made = ledger(10.0, {"friction": 1.5, "damping": 2.5}, (3.0, 8.5), NOTHING)
+    made = ledger(10.0, {"friction": 1.5, "damping": 2.5}, (3.0, 8.5), 0.0)
     assert (made["in_J"], made["stored_J"], made["dissipated"]) == (10.0, 5.5, {"friction": 1.5, "damping": 2.5})
     assert made["residual_J"] == pytest.approx(0.5)
     assert made["residual_relative"] == pytest.approx(0.5 / 10.0)
@@ -370,7 +370,7 @@ def test_what_comes_in_is_stored_or_lost_but_for_the_residual() -> None:
 def test_the_residual_is_seen_against_the_largest_of_all(
     drive: float, lost: float, stored: tuple[float, float], scale: float
 ) -> None:
-    made = ledger(drive, {"friction": lost}, stored, NOTHING)
+    made = ledger(drive, {"friction": lost}, stored, 0.0)
     residual = drive - (stored[1] - stored[0]) - lost
     assert made["residual_J"] == pytest.approx(residual) and made["residual_relative"] == pytest.approx(abs(residual) / scale)
 
@@ -381,10 +381,12 @@ def test_a_swing_under_a_constant_force_turns_over_its_energy() -> None:
         (0.6, 4.0, 1.0, 1.0, 1.0, 0.0), (0.3, 0.2, 1.0, 1.0, 1.0, 0.0),
         (90.0, 0.0, 1.0, 1.0, 1.0, 0.0), (90.0, 2.0, 1.0, 1.0, 1.0, 1.0),
     )  # fmt: skip
-    made = ledger(1e-3, {"friction": 0.0}, (0.0, 0.0), swinging)
+    assert turned_over(swinging) == pytest.approx(2.0 * 0.09 / 0.2)
+    assert turned_over(NOTHING) == turned_over(model()) == 0.0
+    made = ledger(1e-3, {"friction": 0.0}, (0.0, 0.0), turned_over(swinging))
     assert made["residual_relative"] == pytest.approx(1e-3 / (2.0 * 0.09 / 0.2))
-    assert ledger(0.0, {"friction": 0.0}, (0.0, 0.0), NOTHING)["residual_relative"] == 0.0
-    assert ledger(1e-12, {}, (0.0, 0.0), model())["residual_relative"] == 1.0
+    assert ledger(0.0, {"friction": 0.0}, (0.0, 0.0), 0.0)["residual_relative"] == 0.0
+    assert ledger(1e-12, {}, (0.0, 0.0), 0.0)["residual_relative"] == 1.0
 
 
 def test_the_usual_energy_is_that_of_usual_speeds() -> None:
@@ -414,12 +416,12 @@ def test_a_ledger_fails_by_more_than_a_millionth_of_what_is_turned_over(
 @pytest.mark.parametrize(
     ("wall", "simulated", "left", "length", "steps"),
     [
-        (0.05, 4e-4, 4.0, 8e-4, 24.0),  # twice as long
-        (0.2, 4e-4, 4.0, 2e-4, 6.0),  # half as long
-        (0.001, 1e-3, 1.0, 1e-2, 32.0),  # ten times and twice at most
-        (0.0, 1e-3, 1.0, 1e-2, 32.0),  # quicker than the clock can tell
+        (0.05, 0.4, 16.0, 0.8, 96.0),  # twice as long
+        (0.2, 0.4, 16.0, 0.2, 24.0),  # half as long
+        (0.001, 1.0, 1.0, 10.0, 256.0),  # ten times and four times at most
+        (0.0, 1.0, 1.0, 10.0, 256.0),  # quicker than the clock can tell
         (1000.0, 1e-4, 1.0, 1e-7, 1.0),  # never nothing
-        (0.05, 4e-4, 0.0, 1e-3, 32.0),  # ended by its steps: says nothing about the time
+        (0.05, 0.4, 0.0, 1.0, 128.0),  # ended by its steps: says nothing about the time
     ],
 )
 def test_the_next_slice(

@@ -146,7 +146,7 @@ def impacts_again(model, cells, state, options, scratch, record, collides, repea
 def gathered(model, cells, state, options, scratch):
     """The closed contacts by island in `scratch.event.listed`, as the event loop gathers them at an event; returns how many."""
     place(model, state.q, state.u, scratch.event.pose)
-    _, count = gather(model, cells, state, options, scratch.requested, scratch.event.pose, scratch.event.listed)
+    _, count = gather(model, cells, state, options, scratch.path, scratch.requested, scratch.event.pose, scratch.event.listed)
     label_islands(model, scratch.event.listed, count, scratch.event.label)
     sort_by_island(model, scratch.event.label, count, scratch.event.listed, scratch.event.upto)
     return count

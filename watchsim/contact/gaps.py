@@ -198,6 +198,42 @@ def placed_gap(model, k, pose):
     return PlacedGap(shape.gap, _gap_rate(shape, pa, pb), inside_a, inside_b)
 
 
+# Which contacts are too far off to look at? Where circles around two primitives are apart, these do not touch.
+
+CIRCLE = np.dtype(
+    [
+        ("x", "f8"),  # its centre in the body's frame
+        ("y", "f8"),
+        ("radius", "f8"),  # nothing of the primitive is further from there
+        ("arm", "f8"),  # of the centre about the body's origin
+    ]
+)
+
+
+def circles_around(primitives: Records) -> Records:
+    """A `CIRCLE` around each primitive: about the middle of a line or an arc, a corner itself."""
+    half, rows = 0.5 * primitives.length, records(CIRCLE, len(primitives))
+    straight = primitives.kind == LINE
+    rows.x = primitives.px + np.where(straight, half * primitives.tx, 0.0)
+    rows.y = primitives.py + np.where(straight, half * primitives.ty, 0.0)
+    # From the middle of an arc to its ends; the sine of a quarter of its angle, exact also for flat arcs.
+    whole = primitives.extent == FULL
+    angle = np.where(whole, np.pi, np.arctan2(primitives.half_sin, primitives.half_cos))
+    rows.radius = np.where(straight, half, 2.0 * primitives.radius * np.sin(0.5 * angle))
+    rows.arm = np.hypot(rows.x, rows.y)
+    return rows
+
+
+@hot_kernel
+def are_apart(contact, around, pa, pb, least):
+    """True if the primitives of a contact are further than `least` (m) from each other; their bodies are at pa and pb."""
+    a, b = around[contact.a], around[contact.b]
+    ax, ay = point_of(pa, a.x, a.y)
+    bx, by = point_of(pb, b.x, b.y)
+    x, y, reach = (pa.x - pb.x) + (ax - bx), (pa.y - pb.y) + (ay - by), a.radius + b.radius + least
+    return x * x + y * y > reach * reach
+
+
 @kernel
 def contact_point(model, k, pose):
     """The contact point of `k` in the world, on A's circle: (x, y)."""

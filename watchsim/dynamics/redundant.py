@@ -8,6 +8,7 @@ solved here without touching the heap.
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -72,7 +73,7 @@ def mode_system(room: int, coordinates: int, lcp: LcpWork) -> ModeSystem:
 @kernel
 def unit_scale(own):
     """The scale that makes the diagonal entry `own` one; 1 for zero."""
-    return 1.0 / own**0.5 if own > 0.0 else 1.0
+    return 1.0 / math.sqrt(own) if own > 0.0 else 1.0
 
 
 @kernel

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 
 from watchsim.contact.cell_lookup import LISTED, UNKNOWN, candidate, candidates
-from watchsim.contact.gaps import OPEN, contact_kinematics, contact_point, extent_margin, normal_gap, place
+from watchsim.contact.gaps import OPEN, are_apart, contact_kinematics, contact_point, extent_margin, normal_gap, place
 from watchsim.dynamics.delassus import fill_delassus, inverse_mass
 from watchsim.jit import kernel
 from watchsim.simulation.coupled_motion import is_at_rest, place_contacts, project_velocities
@@ -168,6 +168,12 @@ def release_left(model, state, options, pose, record):
 
 
 @kernel
+def beyond_ends(options):
+    """How far apart the primitives of a contact can be, as far as they count, that is closed or has sunk in, m."""
+    return 2.0 * options.sunk + 4.0 * options.extent
+
+
+@kernel
 def insert(ids, count, k):
     """Insert k into the ascending list ids[:count]; returns the new count (unchanged if k is there)."""
     place = count
@@ -182,11 +188,12 @@ def insert(ids, count, k):
 
 
 @kernel
-def gather(model, cells, state, options, out_request, pose, out_ids):
+def gather(model, cells, state, options, path, out_request, pose, out_ids):
     """Ids of I_C, ascending: contacts in force and those with a gap of zero.
 
     What a contact in force will touch next on the same smooth outline is left out. Poses must be current. Of `state` only
-    counts are written. Returns (Stop code: RUNNING, CELL_UNKNOWN or TOO_MANY_CONTACTS; their number).
+    counts are written; `path` holds the circles around primitives. Returns (Stop code: RUNNING, CELL_UNKNOWN or
+    TOO_MANY_CONTACTS; their number).
     """
     m, in_force = 0, state.instant.awake_contacts + state.instant.sleeping_contacts
     for j in range(in_force):
@@ -208,9 +215,14 @@ def gather(model, cells, state, options, out_request, pose, out_ids):
             return Stop.CELL_UNKNOWN, m
         if how == LISTED:
             state.counts.cells_looked_up += 1
+        pa, pb, beyond = pose[pair.a], pose[pair.b], beyond_ends(options)
         for row in range(start, start + count):
             k = candidate(model, cells, how, row)
-            if state.regime.mode[k] != OPEN:
+            contact = model.contacts[k]
+            in_order = model.primitives[contact.a].body == pair.a
+            if state.regime.mode[k] != OPEN or are_apart(
+                contact, path.around, pa if in_order else pb, pb if in_order else pa, beyond
+            ):
                 continue
             gap = normal_gap(model, k, pose).gap
             if -options.behind <= gap <= options.gap_close and extent_margin(model, k, pose) >= -options.extent:

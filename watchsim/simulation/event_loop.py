@@ -39,9 +39,9 @@ from watchsim.simulation.coupled_motion import (
     settle_loads,
     sort_by_island,
 )
-from watchsim.simulation.first_closing import first_touch
+from watchsim.simulation.first_closing import closing_expected, first_touch
 from watchsim.simulation.impacts import approaching, collide
-from watchsim.simulation.integrator import NONE_FIRED, accept_coupled, coupled_step, first_leave, first_turn
+from watchsim.simulation.integrator import NONE_FIRED, SOON, accept_coupled, coupled_step, first_leave, first_turn
 from watchsim.simulation.modes import (
     Verdict,
     begin_instant,
@@ -111,7 +111,7 @@ def handle_event(model, cells, state, options, scratch, record):
     if not hand_over(model, cells, state, options, scratch, record):
         return Stop.CELL_UNKNOWN
     release_left(model, state, options, event.pose, record)
-    code, m = gather(model, cells, state, options, scratch.requested, event.pose, listed)
+    code, m = gather(model, cells, state, options, scratch.path, scratch.requested, event.pose, listed)
     if code != Stop.RUNNING:
         return code
     label_islands(model, listed, m, label)
@@ -331,7 +331,10 @@ def _smooth_step(model, cells, state, options, end_time, scratch, record):
         leave = first_turn(model, state.regime, state.q, state.u)
     else:
         longest = min(left, longest_step(options, state.clock.time), next_knot(model, state.clock.time) - state.clock.time)
-        made, smallest = coupled_step(model, state, options, longest, scratch.smooth)
+        known, soonest = closing_expected(model, cells, state, options, min(longest, SOON * proposed), scratch)
+        if not known:
+            return Stop.CELL_UNKNOWN, False
+        made, smallest = coupled_step(model, state, options, longest, soonest, scratch.smooth)
         if not made:
             return Stop.BEARING_JAMS if scratch.smooth.held.jammed else Stop.STEP_TOO_SMALL, False
         leave, code = first_leave(model, state.regime, options, smallest, scratch.smooth, state.counts)

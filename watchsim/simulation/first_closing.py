@@ -11,10 +11,19 @@ import math
 from typing import NamedTuple
 
 from watchsim.contact.cell_lookup import LISTED, UNKNOWN, candidate, candidates, time_in_cell
-from watchsim.contact.gaps import OPEN, contact_kinematics, normal_gap, placed_gap, point_of
+from watchsim.contact.gaps import (
+    OPEN,
+    are_apart,
+    contact_kinematics,
+    gap_acceleration,
+    normal_gap,
+    place,
+    placed_gap,
+    point_of,
+)
 from watchsim.jit import hot_kernel, kernel
 from watchsim.model import FIXED, FREE, LINE, PIVOT, SLIDE
-from watchsim.simulation.closed_contacts import has_one_way, is_beside_active, is_immovable, room_beside_active
+from watchsim.simulation.closed_contacts import beyond_ends, has_one_way, is_beside_active, is_immovable, room_beside_active
 from watchsim.simulation.coupled_motion import is_at_rest
 from watchsim.simulation.scratch import request_cell
 from watchsim.simulation.state import NO_CONTACT
@@ -526,12 +535,11 @@ def crossing(model, active, in_force, options, k, span, step, path, out_counts):
 
 
 @hot_kernel
-def _stays_open_for(model, options, k, length, first, bounds, path):
-    """A time in which contact k cannot close, from one look at the current poses; infinity if it is `length` or more.
+def _stays_open_for(model, options, k, here, length, first, bounds, path):
+    """A time in which contact k, `here` its gap at the current poses, cannot close; infinity if it is `length` or more.
 
     `bounds` are the `body_bounds` of the pair's bodies, of body `first` and of the other one.
     """
-    here = normal_gap(model, k, path.pose)
     gap, rate = here.gap, here.rate
     if -options.behind <= gap <= options.gap_zero or sunk_level(model, options, k, gap, 0.0, path) < 0.0:
         return 0.0
@@ -546,13 +554,79 @@ def _stays_open_for(model, options, k, length, first, bounds, path):
     return math.inf if safe >= length else safe
 
 
+@hot_kernel
+def _is_out_of_reach(model, options, k, length, first, bounds, path):
+    """True if the primitives of contact k are further apart than their bodies can come together; as `_stays_open_for`."""
+    contact = model.contacts[k]
+    a, b = model.primitives[contact.a], model.primitives[contact.b]
+    one, other = bounds[0 if a.body == first else 1], bounds[1 if a.body == first else 0]
+    turning = one.turn * path.around[contact.a].arm + other.turn * path.around[contact.b].arm
+    way = length * (one.speed + other.speed + turning)
+    return are_apart(contact, path.around, path.pose[a.body], path.pose[b.body], way + beyond_ends(options))
+
+
+# When will a contact probably close? A step of coupled bodies that goes far beyond that is made in vain.
+
+
+@kernel
+def closing_expected(model, cells, state, options, longest, scratch):
+    """(known, time): after how many seconds, of `longest`, a contact closes if accelerations stay as they are; else infinity.
+
+    `known` is False when an unknown cell was met: it is then in `scratch.requested`. A guess, on which nothing depends but the
+    length of the step.
+    """
+    path, step, soonest = scratch.path, scratch.step, math.inf
+    for i in range(len(state.q)):
+        path.u[i], step.bound[i] = state.u[i], abs(state.a[i])
+    place(model, state.q, state.u, path.pose)
+    for p in range(len(model.pairs)):
+        pair = model.pairs[p]
+        if is_at_rest(model, state.regime.awake, pair.a) and is_at_rest(model, state.regime.awake, pair.b):
+            continue
+        how, start, number = candidates(model, cells, p, state.q)
+        if how == UNKNOWN:
+            request_cell(scratch.requested, p, state.q)
+            return False, soonest
+        bounds = body_bounds(model, pair.a, longest, step, path), body_bounds(model, pair.b, longest, step, path)
+        for slot in range(start, start + number):
+            k, within = candidate(model, cells, how, slot), min(longest, soonest)
+            if state.regime.mode[k] != OPEN or _is_out_of_reach(model, options, k, within, pair.a, bounds, path):
+                continue
+            state.counts.gap_evaluations += 1
+            if _stays_open_for(model, options, k, normal_gap(model, k, path.pose), within, pair.a, bounds, path) < math.inf:
+                time = _returns_after(model, options, k, state.a, path)
+                if time < soonest and not is_beside_active(model, state.regime.active, state.instant.awake_contacts, k):
+                    soonest = time
+    return True, soonest
+
+
+@kernel
+def _returns_after(model, options, k, a, path):
+    """When open contact k closes, s, if its gap moves on along a parabola; infinity if it does not, or where it is beside."""
+    contact_kinematics(model, k, path.pose, 0, path.probe)
+    here = path.probe.kin[0]
+    still = here.g <= options.gap_zero and abs(here.gN_dot) <= options.speed_zero
+    if here.g < -options.behind or here.margin < -options.extent or still:
+        return math.inf
+    gap, rate, bend = max(here.g, 0.0), here.gN_dot, gap_acceleration(path.probe, 0, a)
+    square = rate * rate - 2.0 * bend * gap
+    if square < 0.0:
+        return math.inf
+    if rate < 0.0:
+        return 2.0 * gap / (math.sqrt(square) - rate)
+    return (rate + math.sqrt(square)) / -bend if bend < 0.0 else math.inf
+
+
+# Which of them closes first?
+
+
 @kernel
 def _list(model, cells, state, options, p, span, count, step, path):
     """(known, number waiting): put the contacts of pair p that may close in its cell among those that wait.
 
     With them when the pair enters its next cell. `span`: the time at which it is in this cell, and the end of the search.
     """
-    pair, waiting, tau, end = model.pairs[p], path.waiting, span[0], span[1]
+    pair, tau, end = model.pairs[p], span[0], span[1]
     _place(model, (pair.a, pair.b), tau, step, path)
     until = min(end, tau + time_in_cell(model, p, path.q, path.u, step.bound))
     how, start, number = candidates(model, cells, p, path.q)
@@ -560,17 +634,27 @@ def _list(model, cells, state, options, p, span, count, step, path):
         return False, count
     if how == LISTED:
         state.counts.cells_looked_up += 1
-    bounds = (body_bounds(model, pair.a, until - tau, step, path), body_bounds(model, pair.b, until - tau, step, path))
-    for place in range(start, start + number):
-        k = candidate(model, cells, how, place)
-        if state.regime.mode[k] != OPEN or is_beside_active(model, state.regime.active, state.instant.awake_contacts, k):
+    here = body_bounds(model, pair.a, until - tau, step, path), body_bounds(model, pair.b, until - tau, step, path)
+    later = here
+    if until < end:
+        later = body_bounds(model, pair.a, end - tau, step, path), body_bounds(model, pair.b, end - tau, step, path)
+    for slot in range(start, start + number):
+        k = candidate(model, cells, how, slot)
+        if state.regime.mode[k] != OPEN or path.spared[k] == path.search.number:
+            continue
+        if _is_out_of_reach(model, options, k, until - tau, pair.a, here, path):
             continue
         state.counts.gap_evaluations += 1
-        stays = tau + _stays_open_for(model, options, k, until - tau, pair.a, bounds, path)
-        if stays < until:
-            count = put(waiting, count, k, p, (tau, until, stays))
+        look = normal_gap(model, k, path.pose)
+        stays = tau + _stays_open_for(model, options, k, look, until - tau, pair.a, here, path)
+        if stays >= until:
+            # Dart and roller: no turning of the balance changes their gap, in whichever cell it is.
+            if until < end and _stays_open_for(model, options, k, look, end - tau, pair.a, later, path) == math.inf:
+                path.spared[k] = path.search.number
+        elif not is_beside_active(model, state.regime.active, state.instant.awake_contacts, k):
+            count = put(path.waiting, count, k, p, (tau, until, stays))
     if until < end:
-        count = put(waiting, count, NO_CONTACT, p, (until, until, until))
+        count = put(path.waiting, count, NO_CONTACT, p, (until, until, until))
     return True, count
 
 
@@ -583,6 +667,7 @@ def first_touch(model, cells, state, options, end, scratch):
     """
     best, who, step, path = end, NO_CONTACT, scratch.step, scratch.path
     count, known, in_force = 0, True, state.instant.awake_contacts + state.instant.sleeping_contacts
+    path.search.number += 1
     for p in range(len(model.pairs)):
         if is_at_rest(model, state.regime.awake, model.pairs[p].a) and is_at_rest(model, state.regime.awake, model.pairs[p].b):
             continue

@@ -1,7 +1,8 @@
 """How is one smooth step made where contacts couple bodies?
 
 Explicit Runge-Kutta of order 8 with error control and a continuous extension of order 7 (Hairer, Noersett & Wanner 1993,
-II.5, II.6), in which events are found without stepping again. Where the extension misses more than the step, it is repeated.
+II.5, II.6), in which events are found without stepping again; of order 5 where the next event is near. Where the extension
+misses more than the step, it is repeated.
 """
 
 from __future__ import annotations
@@ -149,6 +150,39 @@ D = _table(
     """,
 )
 
+# Which numbers define the method DOPRI5, for short steps?
+#
+# Dormand & Prince's pair of orders 5(4) with a continuous extension of order 4, which needs no stage of its own (same source).
+# Stage 6 is the first stage of the next step.
+
+SHORT_STAGES = 6
+
+A_SHORT = _table(
+    7,
+    7,
+    """
+     1: 0 0.2
+     2: 0 0.075, 1 0.225
+     3: 0 0.9777777777777777, 1 -3.7333333333333334, 2 3.5555555555555554
+     4: 0 2.9525986892242035, 1 -11.595793324188385, 2 9.822892851699436, 3 -0.2908093278463649
+     5: 0 2.8462752525252526, 1 -10.757575757575758, 2 8.906422717743473, 3 0.2784090909090909, 4 -0.2735313036020583
+     6: 0 0.09114583333333333, 2 0.44923629829290207, 3 0.6510416666666666, 4 -0.322376179245283,
+        5 0.13095238095238096
+    """,
+)
+C_SHORT = np.array((0.0, 0.2, 0.3, 0.8, 8.0 / 9.0, 1.0, 1.0))
+# Estimate of the error, of order 4; row 3 of the continuous extension.
+E_SHORT, D_SHORT = _table(
+    2,
+    7,
+    """
+     0: 0 0.0012326388888888888, 2 -0.0042527702905061394, 3 0.03697916666666667, 4 -0.05086379716981132,
+        5 0.0419047619047619, 6 -0.025
+     1: 0 -1.1270175653862835, 2 2.675424484351598, 3 -5.685526961588504, 4 3.5219323679207912, 5 -1.7672812570757455,
+        6 2.382468931778144
+    """,
+)
+
 # When, within a coupled step, does a decided mode end?
 
 NONE_FIRED = -1  # in the place of a monitor's code
@@ -284,25 +318,31 @@ def first_turn(model, regime, q, u):
 # than shortening it.
 SAFETY, SHRINK, GROW = 0.78, 0.2, 6.0
 
+# Of the proposed step: so soon a contact may close that the step ends there; with no more left, order 5 is tried; the shortest
+# step. Of the way to that event: how far a step goes. Of the error that a step may have: the most at order 5.
+SOON, SHORT, LEAST_SHORT, BEYOND_EVENT = 0.25, 0.2, 0.01, 1.2
+SHORT_ERROR = 0.1
+
 PROBE = 0.75  # share of a step after which its extension's defect is largest
 
 
 @kernel
-def _stage(model, regime, options, s, h, smooth, out_counts):
-    """Derivative of stage s into `stages[s]`; returns the smallest monitor."""
+def _stage(model, regime, options, short, s, h, smooth, out_counts):
+    """Derivative of stage s, of DOPRI5 if `short`, into `stages[s]`; returns the smallest monitor."""
     step = smooth.step
     y0, y, stages = step.y0, smooth.y, step.stages
     width = len(y0)
     for i in range(width):
         y[i] = 0.0
     for j in range(s):
-        share = A[s, j]
+        share = A_SHORT[s, j] if short else A[s, j]
         if share != 0.0:
             for i in range(width):
                 y[i] += share * stages[j, i]
     for i in range(width):
         y[i] = y0[i] + h * y[i]
-    smallest = motion(model, regime, options, step.span.start + C[s] * h, smooth, out_counts)
+    node = C_SHORT[s] if short else C[s]
+    smallest = motion(model, regime, options, step.span.start + node * h, smooth, out_counts)
     copy(smooth.dy, stages[s])
     return smallest
 
@@ -320,7 +360,7 @@ def _tolerance(model, options, step):
 
 
 @kernel
-def _error(model, tolerance, h, step):
+def _error(model, tolerance, short, h, step):
     """Estimated error of the step over the tolerance; above 1 it must be repeated."""
     n = len(model.coordinates)
     five, three = 0.0, 0.0
@@ -330,9 +370,9 @@ def _error(model, tolerance, h, step):
         if i >= n:
             scale = max(scale * coordinate.rate, abs(step.y0[i]), abs(step.y1[i]))
         e5, e3 = 0.0, 0.0
-        for s in range(STAGES + 1):
-            e5 += E5[s] * step.stages[s, i]
-            e3 += E3[s] * step.stages[s, i]
+        for s in range((SHORT_STAGES if short else STAGES) + 1):
+            e5 += (E_SHORT[s] if short else E5[s]) * step.stages[s, i]
+            e3 += 0.0 if short else E3[s] * step.stages[s, i]
         five += (e5 / scale) ** 2
         three += (e3 / scale) ** 2
     if five == 0.0:
@@ -341,20 +381,23 @@ def _error(model, tolerance, h, step):
 
 
 @kernel
-def _extend(model, regime, options, h, smooth, out_counts):
+def _extend(model, regime, options, short, h, smooth, out_counts):
     """Coefficients of the continuous extension into `dense`; returns the smallest monitor at its stages."""
-    step, smallest = smooth.step, math.inf
-    for s in range(STAGES + 1, STAGES + 4):
-        smallest = min(smallest, _stage(model, regime, options, s, h, smooth, out_counts))
+    step, smallest, end = smooth.step, math.inf, SHORT_STAGES if short else STAGES
+    for s in range(end + 1, end + 1 if short else end + 4):
+        smallest = min(smallest, _stage(model, regime, options, short, s, h, smooth, out_counts))
     for i in range(len(step.y0)):
         change = step.y1[i] - step.y0[i]
-        first, last = h * step.stages[0, i], h * step.stages[STAGES, i]
+        first, last = h * step.stages[0, i], h * step.stages[end, i]
         step.dense[0, i] = change
         step.dense[1, i] = first - change
         step.dense[2, i] = 2.0 * change - last - first
         for row in range(4):
             total = 0.0
-            for s in range(STAGES + 4):
+            if short and row == 0:
+                for s in range(end + 1):
+                    total += D_SHORT[s] * step.stages[s, i]
+            for s in range(0 if short else end + 4):
                 total += D[row, s] * step.stages[s, i]
             step.dense[3 + row, i] = h * total
     return smallest
@@ -375,8 +418,8 @@ def _defect(model, tolerance, h, step):
 
 
 @kernel
-def coupled_step(model, state, options, longest, smooth):
-    """One accepted step of at most `longest` seconds from the state, left in `smooth.step`.
+def coupled_step(model, state, options, longest, event_after, smooth):
+    """One accepted step of at most `longest` seconds from the state, left in `smooth.step`; not far beyond `event_after` (s).
 
     Returns (made: False if it gets too small, the smallest monitor met at its stages). Proposes the next length in
     `state.clock.step`.
@@ -390,24 +433,26 @@ def coupled_step(model, state, options, longest, smooth):
     for i in range(SUMS):
         step.y0[2 * n + i] = 0.0
     engage(model, regime.active, state.instant, smooth)
-    h = min(state.clock.step, longest)
-    shrunk = False
+    h, beyond = min(state.clock.step, longest), max(BEYOND_EVENT * event_after, LEAST_SHORT * state.clock.step)
+    # Only where a contact is to close: what ends at a knot of a force over time may turn twice on the way.
+    short, shrunk = beyond < min(h, SHORT * state.clock.step), False
+    h = min(h, beyond)
     smooth.held.jammed = 0
-    at_start = _stage(model, regime, options, 0, h, smooth, state.counts)  # whatever the length of the step
+    at_start = _stage(model, regime, options, short, 0, h, smooth, state.counts)  # whatever the length of the step
     copy(smooth.monitors, smooth.before)
     if smooth.held.jammed:
         return False, at_start
     while True:
         smallest, smooth.held.jammed = at_start, 0
-        for s in range(1, STAGES + 1):
-            smallest = min(smallest, _stage(model, regime, options, s, h, smooth, state.counts))
+        for s in range(1, (SHORT_STAGES if short else STAGES) + 1):
+            smallest = min(smallest, _stage(model, regime, options, short, s, h, smooth, state.counts))
         for i in range(len(step.y0)):
             step.y1[i] = smooth.y[i]
-        tolerance = _tolerance(model, options, step)
-        error = _error(model, tolerance, h, step)
+        tolerance = _tolerance(model, options, step) * (SHORT_ERROR if short else 1.0)
+        error = _error(model, tolerance, short, h, step)
         if error <= 1.0:
             step.span.length = h
-            smallest = min(smallest, _extend(model, regime, options, h, smooth, state.counts))
+            smallest = min(smallest, _extend(model, regime, options, short, h, smooth, state.counts))
             defect = _defect(model, tolerance, h, step)
             error = defect if defect > 1.0 else error
             error = math.inf if smooth.held.jammed else error
@@ -417,12 +462,16 @@ def coupled_step(model, state, options, longest, smooth):
         if not h > SMALLEST_STEP * longest_step(options, state.clock.time):
             return False, smallest
         state.counts.rejected_steps += 1
+        if short:  # of the higher order it may well be good enough
+            short = False
+            continue
         shrunk = True
         h *= factor if error < math.inf else SHRINK
-    proposed = h * (min(1.0, factor) if shrunk else factor)
-    if not shrunk:  # a step cut short by `longest` says nothing against a longer next one
-        proposed = max(proposed, min(state.clock.step, h * GROW))
-    state.clock.step = min(longest_step(options, state.clock.time), proposed)
+    if not short:
+        proposed = h * (min(1.0, factor) if shrunk else factor)
+        if not shrunk:  # a step cut short says nothing against a longer next one
+            proposed = max(proposed, min(state.clock.step, h * GROW))
+        state.clock.step = min(longest_step(options, state.clock.time), proposed)
     bound_accelerations(step, n)
     state.counts.steps += 1
     return True, smallest

@@ -21,13 +21,13 @@ from watchsim.tolerances import LEDGER_PER_TOLERANCE, LEDGER_SHARE
 # Where did the energy of a run go, and does its ledger close?
 
 
-def ledger(drive: float, dissipated: dict[str, float], stored: tuple[float, float], model: Model) -> dict[str, Any]:
-    """Work in = stored + dissipated + residual, J; `stored` at the start and at the end."""
+def ledger(drive: float, dissipated: dict[str, float], stored: tuple[float, float], turned_over: float) -> dict[str, Any]:
+    """Work in = stored + dissipated + residual, J; `stored` at the start and at the end, `turned_over`: see the function."""
     at_start, at_end = stored
     more, lost = at_end - at_start, sum(dissipated.values())
     residual = drive - more - lost
     # A swing that loses nothing gets nothing and stores nothing more: what it turns over is the scale of its rounding.
-    scale = max(abs(drive), abs(more), lost, at_end, at_start, _turned_over(model))
+    scale = max(abs(drive), abs(more), lost, at_end, at_start, turned_over)
     return {
         "in_J": drive,
         "dissipated": dissipated,
@@ -37,7 +37,7 @@ def ledger(drive: float, dissipated: dict[str, float], stored: tuple[float, floa
     }
 
 
-def _turned_over(model: Model) -> float:
+def turned_over(model: Model) -> float:
     """What constant forces give to springs and take back in each swing, J."""
     coordinates = model.coordinates
     sprung = coordinates[(coordinates.stiffness > 0.0) & (coordinates.driven == 0)]
@@ -52,8 +52,8 @@ def usual_energy(model: Model) -> float:
 
 def ledger_fails(energy: dict[str, Any], held: float, tolerance: float) -> bool:
     """True if the residual of the ledger is more than rounding; `held` (J): the most energy that was ever in the motion."""
-    turned_over = held + abs(energy["in_J"]) + abs(energy["stored_J"]) + sum(energy["dissipated"].values())
-    return bool(abs(energy["residual_J"]) > max(LEDGER_SHARE, LEDGER_PER_TOLERANCE * tolerance) * turned_over)
+    moved = held + abs(energy["in_J"]) + abs(energy["stored_J"]) + sum(energy["dissipated"].values())
+    return bool(abs(energy["residual_J"]) > max(LEDGER_SHARE, LEDGER_PER_TOLERANCE * tolerance) * moved)
 
 
 # What is known about a complementarity problem that nothing solved?

@@ -41,6 +41,7 @@ from watchsim.simulation.run_end import (
     furthest,
     ledger,
     ledger_fails,
+    turned_over,
     unaccounted,
     unexplained,
     usual_energy,
@@ -60,7 +61,7 @@ from watchsim.tolerances import FIRST_STEP
 # work. How slices end changes no bit of a run.
 
 SLICE_WALL = 0.1  # s between looks at the clock
-FEWEST_STEPS, MOST_STEPS = 16.0, 4000.0  # of a slice; steps may become much slower from one to the next
+FEWEST_STEPS, MORE_STEPS, MOST_STEPS = 64.0, 4.0, 4000.0  # of a slice; steps may become much slower from one to the next
 
 
 class Pace:
@@ -68,7 +69,7 @@ class Pace:
 
     def __init__(self, duration: float) -> None:
         self.duration = duration
-        self.length = 1e-5 * duration  # s, simulated; grows tenfold at most: a long slice would be deaf
+        self.length = 1e-2 * duration  # s, simulated; grows tenfold at most: a long slice would be deaf
         self.steps = FEWEST_STEPS
         self.start = self.begun = 0.0
 
@@ -83,7 +84,7 @@ class Pace:
         pace = SLICE_WALL / max(time.perf_counter() - self.start, 1e-4)
         if until.steps > 0.0:
             self.length = min(max((now - self.begun) * pace, 1e-9 * self.duration), 10.0 * self.length)
-        self.steps = min(max(pace * (self.steps - until.steps), 1.0), 2.0 * self.steps, MOST_STEPS)
+        self.steps = min(max(pace * (self.steps - until.steps), 1.0), MORE_STEPS * self.steps, MOST_STEPS)
 
 
 # How does Ctrl-C end a run between two slices, and never in the middle of keeping what it has made?
@@ -238,7 +239,7 @@ class Run:
         self.record = new_record(model, ROWS + ROWS_PER_STEP, EVENTS + EVENTS_PER_CONTACT * room_for(model), windows)
         self.watch = OverlapWatch(scene, compiled, self.method, self.kept.windows)
         self.stored_at_start = stored_energy(model, self.state.q, self.state.u)
-        self._usual_energy = usual_energy(model)
+        self._usual_energy, self._turned_over = usual_energy(model), turned_over(model)
         self.crowd = Crowd(compiled.unit)
         self.foregone: Foregone | None = None  # looks for what ends the run early
         self.saved: SavedState | None = None
@@ -290,6 +291,8 @@ class Run:
     def flush(self) -> None:
         """Empty the buffers: count the events, keep what the recording wants."""
         rows, events = self.record.used.rows, self.record.used.events
+        if rows == 0 and events == 0:
+            return
         self.tally.fold(self.record.events[:events])
         self.watch.see_rows(self.record.rows[:rows])
         self.kept.flush(self.record.rows[:rows], self.record.events[:events])
@@ -426,4 +429,4 @@ class Run:
     def energy(self) -> dict[str, Any]:
         """The ledger: work in = stored + dissipated + residual, J."""
         at_end = stored_energy(self.compiled.model, self.state.q, self.state.u)
-        return ledger(float(self.state.sums.drive), self._dissipated(), (self.stored_at_start, at_end), self.compiled.model)
+        return ledger(float(self.state.sums.drive), self._dissipated(), (self.stored_at_start, at_end), self._turned_over)

@@ -10,7 +10,7 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.contact.gaps import OPEN, STICK, Closed, ClosedRef, closed_contacts, poses
+from watchsim.contact.gaps import OPEN, STICK, Closed, ClosedRef, circles_around, closed_contacts, poses
 from watchsim.dynamics.delassus import ContactSystem, ContactSystemRef, contact_system
 from watchsim.dynamics.friction import FrictionProblem, FrictionProblemRef, KnownProblemRef, friction_problem, problem_size
 from watchsim.dynamics.impact import ImpactPhases, ImpactPhasesRef, impact_phases
@@ -240,6 +240,12 @@ class Waiting:
     stays_open: float  # s in the step: it cannot close before
 
 
+class Search:
+    """The search for the first contact that closes in a step."""
+
+    number: int  # of searches so far
+
+
 class Path(NamedTuple):
     """Where bodies are within a step (step_path.py), and which contacts may close there (first_closing.py)."""
 
@@ -248,6 +254,9 @@ class Path(NamedTuple):
     pose: Any
     probe: Closed  # kinematics of one contact
     waiting: Any  # records of `Waiting`: contacts that may close, the one that could be first in front
+    around: Records  # by primitive: `CIRCLE`
+    search: Search
+    spared: Integers  # by contact: the last search that has found it to stay open all the time
 
 
 PathRef = by_reference(Path, __name__)
@@ -431,8 +440,11 @@ def _impact_room(n: int, contacts: int, room: int) -> ImpactRoom:
     return ImpactRoom(restitution=np.zeros(room), before=np.zeros(n), grip=grip, mode=mode, **by_row)
 
 
-def _path_room(n: int, bodies: int, entries: int) -> Path:
-    return Path(np.zeros(n), np.zeros(n), poses(bodies), closed_contacts(1), records(dtype_of(Waiting), entries))
+def _path_room(n: int, model: Model) -> Path:
+    contacts = len(model.contacts)
+    waiting = records(dtype_of(Waiting), contacts + len(model.pairs))
+    places = np.zeros(n), np.zeros(n), poses(len(model.bodies)), closed_contacts(1)
+    return Path(*places, waiting, circles_around(model.primitives), blank(Search), np.zeros(contacts, np.int64))
 
 
 def new_scratch(model: Model) -> Scratch:
@@ -445,7 +457,7 @@ def new_scratch(model: Model) -> Scratch:
         work=work,
         projection=_projection_room(n, room),
         smooth=_smooth_room(step, work, bodies, room),
-        path=_path_room(n, bodies, contacts + len(model.pairs)),
+        path=_path_room(n, model),
         event=_event_room(n, bodies, contacts, room),
         impact=_impact_room(n, contacts, room),
         requested=cell_request(n),
