@@ -418,12 +418,8 @@ def _defect(model, tolerance, h, step):
 
 
 @kernel
-def coupled_step(model, state, options, longest, event_after, smooth):
-    """One accepted step of at most `longest` seconds from the state, left in `smooth.step`; not far beyond `event_after` (s).
-
-    Returns (made: False if it gets too small, the smallest monitor met at its stages). Proposes the next length in
-    `state.clock.step`.
-    """
+def _begin_step(model, state, smooth):
+    """Begin a coupled step at the state."""
     step, regime = smooth.step, state.regime
     n = len(model.coordinates)
     step.span.kind, step.span.start = COUPLED, state.clock.time
@@ -433,8 +429,19 @@ def coupled_step(model, state, options, longest, event_after, smooth):
     for i in range(SUMS):
         step.y0[2 * n + i] = 0.0
     engage(model, regime.active, state.instant, smooth)
+
+
+@kernel
+def coupled_step(model, state, options, longest, event_after, smooth):
+    """One accepted step of at most `longest` seconds from the state, left in `smooth.step`; not far beyond `event_after` (s).
+
+    Returns (made: False if it gets too small, the smallest monitor met at its stages). Proposes the next length in
+    `state.clock.step`.
+    """
+    step, regime = smooth.step, state.regime
+    _begin_step(model, state, smooth)
     h, beyond = min(state.clock.step, longest), max(BEYOND_EVENT * event_after, LEAST_SHORT * state.clock.step)
-    # Only where a contact is to close: what ends at a knot of a force over time may turn twice on the way.
+    # Only where a contact is to close: what ends at a knot of a force over time may turn back twice on the way.
     short, shrunk = beyond < min(h, SHORT * state.clock.step), False
     h = min(h, beyond)
     smooth.held.jammed = 0
@@ -472,7 +479,7 @@ def coupled_step(model, state, options, longest, event_after, smooth):
         if not shrunk:  # a step cut short says nothing against a longer next one
             proposed = max(proposed, min(state.clock.step, h * GROW))
         state.clock.step = min(longest_step(options, state.clock.time), proposed)
-    bound_accelerations(step, n)
+    bound_accelerations(step, len(model.coordinates))
     state.counts.steps += 1
     return True, smallest
 
