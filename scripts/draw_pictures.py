@@ -399,6 +399,13 @@ def positions(path: Path) -> None:
     ws.plot_positions(found).savefig(path, dpi=TOLERANCE_DPI)
 
 
+def shock(path: Path) -> None:
+    """The map of docs/guide/shock.md."""
+    scene = ws.load(ROOT / "profiles" / "swiss_lever")
+    scene = scene.set("bodies.lever.mass", "8 mg").set("bodies.lever.centre_of_mass", ["0 mm", "0.3 mm"])
+    ws.plot_shock_map(ws.shock_map(scene)).savefig(path, dpi=TOLERANCE_DPI)
+
+
 def exhibits(shown: Iterable[Exhibit], folder: str, first: str = "") -> dict[str, Make]:
     shop = Shop(first)
     return {f"{folder}{one.picture}": partial(shop.exhibit, one) for one in shown}
@@ -414,6 +421,7 @@ def groups() -> dict[str, dict[str, Make]]:
         "gallery": exhibits(EXHIBITS, "gallery/"),
         "plots": exhibits(PLOTS, "plots/", RUN),
         "positions": {"positions.png": positions},
+        "shock": {"shock.png": shock},
         "tolerances": {f"tolerances_{name}.png": partial(tolerances, name) for name in ("coaxial", "swiss_lever")},
     }
 

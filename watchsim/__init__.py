@@ -37,6 +37,8 @@ _HOMES = {
     "sweep": "watchsim.studies.sweep",
     "sensitivity": "watchsim.studies.sensitivity",
     "positions": "watchsim.studies.positions",
+    "shock": "watchsim.studies.shock",
+    "shock_map": "watchsim.studies.shock",
     "tolerance": "watchsim.studies.tolerance",
     "ToleranceStudy": "watchsim.studies.tolerance_result",
     "merge": "watchsim.studies.tolerance",
@@ -57,6 +59,7 @@ _HOMES = {
     "plot_forces": "watchsim.render.force_plot",
     "plot_sound": "watchsim.render.sound_plot",
     "plot_positions": "watchsim.render.positions_plot",
+    "plot_shock_map": "watchsim.render.shock_plot",
     "plot_fit": "watchsim.render.study_plot",
     "plot_front": "watchsim.render.study_plot",
     "plot_sensitivity": "watchsim.render.study_plot",
@@ -103,6 +106,7 @@ if TYPE_CHECKING:
     from watchsim.render.phase_plots import plot_phases as plot_phases
     from watchsim.render.phase_plots import plot_timeline as plot_timeline
     from watchsim.render.positions_plot import plot_positions as plot_positions
+    from watchsim.render.shock_plot import plot_shock_map as plot_shock_map
     from watchsim.render.sound_plot import plot_sound as plot_sound
     from watchsim.render.study_plot import plot_fit as plot_fit
     from watchsim.render.study_plot import plot_front as plot_front
@@ -126,6 +130,8 @@ if TYPE_CHECKING:
     from watchsim.studies.improve import improve as improve
     from watchsim.studies.positions import positions as positions
     from watchsim.studies.sensitivity import sensitivity as sensitivity
+    from watchsim.studies.shock import shock as shock
+    from watchsim.studies.shock import shock_map as shock_map
     from watchsim.studies.steady import steady as steady
     from watchsim.studies.sweep import sweep as sweep
     from watchsim.studies.tolerance import merge as merge

@@ -81,6 +81,7 @@ COMMANDS = (
     "compare",
     "sweep",
     "positions",
+    "shock",
     "tolerance",
     "merge",
     "improve",

@@ -196,10 +196,10 @@ def study_folder(args: argparse.Namespace, scene: Scene, what: str, held: contex
     name = scene.path.parent.name if scene.path else "scene"
     folder = Path(args.output or Path("results") / f"{name}-{what}")
     secured_folder(folder, "results", default=not args.output)
-    if folder.is_dir() and any(folder.iterdir()) and not (args.resume or args.force):
-        raise InputError(
-            f"{folder} already exists. Continue it (--resume), replace it (--force), or choose another folder (-o)."
-        )
+    resume = getattr(args, "resume", None)  # None: that study cannot go on
+    if folder.is_dir() and any(folder.iterdir()) and not (resume or args.force):
+        ways = "Replace" if resume is None else "Continue it (--resume), replace"
+        raise InputError(f"{folder} already exists. {ways} it (--force), or choose another folder (-o).")
     folder.mkdir(exist_ok=True)
     held.enter_context(claimed(folder))
     return folder

@@ -277,7 +277,7 @@ def _work(number: int, question: Question, changes: dict[str, float | str]) -> t
 
 NAME = "rows.jsonl"
 FIGURES = (".png", ".svg", ".pdf")
-STUDIES = ("sweep", "tolerance", "positions")  # the names of what is made of the rows
+STUDIES = ("sweep", "tolerance", "positions", "shock")  # the names of what is made of the rows
 FILES = tuple(f"{name}{ending}" for name in STUDIES for ending in (".json", ".csv", ".parquet", ".html", *FIGURES))
 
 Study = dict[str, Any]
