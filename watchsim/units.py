@@ -226,6 +226,11 @@ def signed(value: float, decimals: int) -> str:
     return f"−{text[1:]}" if text.startswith("-") and float(text) != 0.0 else text.lstrip("-")
 
 
+def true_minus(text: str) -> str:
+    """The text with true minus signs before its numbers; exponents, names and ranges stay."""
+    return re.sub(r"(?<![\w.)-])-(?=\.?\d)", "−", text)
+
+
 @lru_cache(maxsize=512)
 def _unit(text: str) -> Unit:
     """Parses products, quotients, powers and brackets of unit names; KeyError where that fails."""

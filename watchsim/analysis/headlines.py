@@ -19,7 +19,7 @@ from watchsim.mechanism.compile import scene_size
 from watchsim.scene.roles import keeps_time
 from watchsim.simulation import MOREAU
 from watchsim.simulation.trajectory import Trajectory
-from watchsim.units import decimals_for, metric, signed
+from watchsim.units import decimals_for, metric, signed, true_minus
 
 UNSOLVED = 1e-6  # share of a contact problem's largest term: what rounding leaves lies far below
 COARSE = 5e-3  # overlap as a share of the mechanism's size, beyond which a step has lost the shapes that touch
@@ -362,10 +362,10 @@ def expected_text(entry: Mapping[str, Any]) -> str:
     if ends:
         promised = " ".join(f"{word} {end:.12g}{unit}" for word, end in ends)
     if entry["ok"] is None:
-        return f"{entry['key']} {promised}"
+        return true_minus(f"{entry['key']} {promised}")
     if entry["got"] is None:
-        return f"{entry['key']} {promised}, but {entry['message']}"
+        return true_minus(f"{entry['key']} {promised}") + f", but {entry['message']}"
     # One digit more than the tolerance has.
     size = entry["tolerance"] if math.isfinite(entry["tolerance"] or math.inf) else abs(entry["expected"]) or 1.0
     digits = max(4, 2 + math.ceil(math.log10(max(abs(entry["got"]), size) / size)))
-    return f"{entry['key']} {promised}, got {entry['got']:.{min(digits, 17)}g}{unit}"
+    return true_minus(f"{entry['key']} {promised}, got {entry['got']:.{min(digits, 17)}g}{unit}")

@@ -27,7 +27,7 @@ from watchsim.render.palette import ENERGIES, FAINT, INK
 from watchsim.render.phase_plots import bands, beat_name
 from watchsim.scene.roles import roles
 from watchsim.simulation.trajectory import Array, Trajectory, frames
-from watchsim.units import metric
+from watchsim.units import metric, signed
 
 LEFT, RIGHT, ROW, OVER, UNDER, KEY = 27.0, 4.0, 5.0, 6.0, 9.0, 4.0  # mm
 WORDS = 27.0  # mm, beside a bar
@@ -89,7 +89,7 @@ def _whole(axes: Axes, went: dict[str, float], supplied: float) -> None:
     for bar, name, value in zip(bars, names, values, strict=True):
         bar.set_gid(f"energy {name}")
         bar.set_hatch(HATCHES.get(name))
-        words = style.minus(f"{value:.1f} %, {metric(went[name] * supplied, 'J', 4)}")
+        words = f"{signed(value, 1)} %, {style.minus(metric(went[name] * supplied, 'J', 4))}"
         place = (max(value, 0.0), bar.get_y() + 0.5 * bar.get_height())
         style.note(axes, words, place, (3, 0), va="center")
     axes.set_yticks(range(len(names)), names)

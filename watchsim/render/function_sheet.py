@@ -32,6 +32,7 @@ from watchsim.render.style import COLUMN, FULL, MM, save
 from watchsim.scene.scene import Scene
 from watchsim.simulation.trajectory import Array
 from watchsim.storage.write import write_file
+from watchsim.units import signed
 
 THIN, SIZE = 0.6, 7.0  # pt
 HEAD = "-|>,head_width=0.12,head_length=0.3"
@@ -302,7 +303,7 @@ def _extent(axes: Axes) -> tuple[tuple[float, float], tuple[float, float]]:
 
 
 def degrees(value: float) -> str:
-    return f"{math.degrees(value):.2f}°"
+    return f"{signed(math.degrees(value), 2)}°"
 
 
 AROUND = 1.15  # times the way of the tooth: half the picture
