@@ -13,6 +13,7 @@ from __future__ import annotations
 import contextlib
 import os
 import signal
+import sys
 import threading
 from collections.abc import Callable, Iterator
 from typing import NoReturn, TypeVar
@@ -137,6 +138,19 @@ def before_leaving(hook: Hook) -> Hook:
     """Have `hook` called before the process is ended at once."""
     _listener.hooks.append(hook)
     return hook
+
+
+def may_fork() -> bool:
+    """Whether a copy of this process is safe: of the command line, whose threads are known, on Linux (macOS forbids it)."""
+    return installed() and sys.platform == "linux"
+
+
+def leave_to_first() -> None:
+    """In a copy of the process: signals are those of the first one, which ends its copies itself."""
+    signal.set_wakeup_fd(-1)
+    _listener.installed = False
+    for number in _numbers():
+        signal.signal(number, signal.SIG_IGN if number == signal.SIGINT else signal.SIG_DFL)
 
 
 def _numbers() -> list[signal.Signals]:

@@ -12,7 +12,6 @@ import ctypes
 import functools
 import os
 import signal
-import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -78,8 +77,8 @@ def _load() -> None:
 
 
 def can_copy() -> bool:
-    """Whether a copy of this process is safe and of use: of the command line, on Linux (macOS forbids it), with two cores."""
-    return stopping.installed() and sys.platform == "linux" and len(os.sched_getaffinity(0)) > 1
+    """Whether a copy of this process is safe and of use: with two cores."""
+    return stopping.may_fork() and len(os.sched_getaffinity(0)) > 1
 
 
 def drawn_beside(draws: Draws, folder: Path) -> Draws:

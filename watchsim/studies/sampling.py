@@ -16,7 +16,6 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtr, ndtri
-from scipy.stats import qmc
 
 from watchsim.scene.read_tolerances import matrix
 from watchsim.scene.scene import Correlation, Tolerance
@@ -90,6 +89,8 @@ class Space:
 
     def uniform(self, numbers: Sequence[int], seed: int, extra: int = 0) -> Floats:
         """Sobol points (n, draws + extra) of the samples with those numbers."""
+        from scipy.stats import qmc  # half a second to load
+
         wide, asked = len(self.draws) + extra, np.array(numbers, dtype=np.int64)
         out = np.empty((len(asked), wide))
         for sequence in np.unique(asked % SEQUENCES):

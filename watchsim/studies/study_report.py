@@ -7,17 +7,18 @@ import io
 import math
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from watchsim.results.tables import cell
 from watchsim.studies.axes import Axis, slug
 from watchsim.studies.point import OUTPUTS, Output
-from watchsim.studies.positions import SURE, Positions
-from watchsim.studies.sampling import plain_values
-from watchsim.studies.sensitivity import Effect, Sensitivity
-from watchsim.studies.sweep import Sweep
-from watchsim.studies.tolerance_result import ToleranceStudy, failing
 from watchsim.units import signed, to
+
+if TYPE_CHECKING:  # each study loads what it needs, and a quarter of a second of scipy is for tolerances alone
+    from watchsim.studies.positions import Positions
+    from watchsim.studies.sensitivity import Effect, Sensitivity
+    from watchsim.studies.sweep import Sweep
+    from watchsim.studies.tolerance_result import ToleranceStudy
 
 Table = dict[str, list[Any]]  # column -> values
 
@@ -101,6 +102,9 @@ def sensitivity_text(found: Sensitivity) -> str:
 
 def tolerance_table(found: ToleranceStudy) -> Table:
     """One line for each sample: what it was made to (SI), what it gives, and what is wrong with it."""
+    from watchsim.studies.sampling import plain_values
+    from watchsim.studies.tolerance_result import failing
+
     numbers = list(found.numbers_of)
     values = [plain_values(one) for one in found.plan.changes(numbers)]
     rows = [found.rows[number] for number in numbers]
@@ -202,6 +206,8 @@ READ_TO = {"rate_s_per_d": 2, "amplitude_deg": 2, "beat_error_ms": 4}  # decimal
 
 def poise_words(found: Positions) -> str:
     """The poise error by the rates, and the true one."""
+    from watchsim.studies.positions import SURE
+
     poise, balance = found.poise, found.balance
     if poise is None or balance is None:
         return "poise error: not known without three upright positions in which a sprung balance ticks"

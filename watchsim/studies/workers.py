@@ -22,14 +22,16 @@ import traceback
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import IO, Any, Protocol
+from typing import IO, Any, NoReturn, Protocol
 
 from watchsim import stopping
 from watchsim.results.tables import plain
+from watchsim.scene.errors import SceneError
 from watchsim.scene.scene import Scene
 from watchsim.storage.write import real, reason, write_file
 from watchsim.studies.axes import Value
 from watchsim.studies.point import Question, Row, answer
+from watchsim.studies.section import Loop
 
 Points = Sequence[tuple[int, Mapping[str, Value]]]
 POLL = 0.2  # s between checks whether the study is to stop
@@ -69,8 +71,9 @@ class Here:
             yield number, row
 
 
-# Processes of this machine. Each is an interpreter of its own, started by a thread that hands it one point after the other
-# through pipes: there is no lock, server or list of shared things that could be lost with a process that is killed.
+# Processes of this machine. A thread of each hands it one point after the other through pipes: there is no lock, server or list
+# of shared things that could be lost with a process that is killed. Where that is safe they are copies of this process with the
+# kernels loaded, made before there are such threads; else, and to replace what was killed, interpreters of their own.
 
 LOSSES = 4  # for each worker: so many may be killed in a row without a single row
 LOST = "worker processes were ended from outside, perhaps for lack of memory"
@@ -87,7 +90,7 @@ class Processes:
     def answers(self, question: Question, points: Points, interrupted: Callable[[], bool]) -> Iterator[tuple[int, Row]]:
         waiting, made = deque(points), _Made()
         count, left, losses = min(self.workers, len(points)), len(points), 0
-        pool = [_started(question, waiting, made) for _ in range(count)]
+        pool = [_served(process, question, waiting, made) for process in _begun(count, question)]
         try:
             while left and not interrupted():
                 try:
@@ -100,7 +103,7 @@ class Processes:
                     losses += 1
                     if losses == LOSSES * count:
                         raise WorkersLost(LOST)
-                    pool.append(_started(question, waiting, made))
+                    pool.append(_served(_interpreter(), question, waiting, made))
                 else:
                     losses, left = 0, left - 1
                     yield one
@@ -114,21 +117,79 @@ class Processes:
 _Made = queue.SimpleQueue["tuple[int, Row] | BaseException | None"]  # rows, what went wrong, None: a process was killed
 
 
-def _started(
-    question: Question, waiting: deque[tuple[int, Mapping[str, Value]]], made: _Made
-) -> tuple[subprocess.Popen[bytes], threading.Thread]:
-    """A worker process and the thread that serves it. Ctrl-C is for the process that started it, hence the own session."""
+class _Copy:
+    """A copy of this process that answers points, with what is used of a `Popen`."""
+
+    def __init__(self, before: Sequence[_Copy]) -> None:
+        """`before`: earlier copies, whose pipes this one must not hold open."""
+        (read, self_write), (self_read, write) = os.pipe(), os.pipe()
+        self.stdin, self.stdout = os.fdopen(self_write, "wb"), os.fdopen(self_read, "rb")
+        held = signal.pthread_sigmask(signal.SIG_BLOCK, set(signal.Signals))
+        try:
+            self._number = os.fork()
+            if self._number == 0:
+                _be_copy(read, write, [pipe for one in (*before, self) for pipe in (one.stdin, one.stdout)])
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, held)
+            os.close(read)
+            os.close(write)
+
+    def kill(self) -> None:
+        """End it."""
+        with contextlib.suppress(OSError):
+            os.kill(self._number, signal.SIGKILL)
+
+    def wait(self) -> None:
+        """Until it has ended."""
+        os.waitpid(self._number, 0)
+
+
+def _be_copy(read: int, write: int, others: Sequence[IO[bytes]]) -> NoReturn:
+    """What the copy does, until this process has gone."""
+    with contextlib.suppress(BaseException):
+        stopping.leave_to_first()
+        signal.pthread_sigmask(signal.SIG_SETMASK, ())
+        os.setsid()
+        for pipe in others:
+            os.close(pipe.fileno())
+        os.dup2(read, 0)
+        os.dup2(write, 1)
+        work()
+    os._exit(1)
+
+
+_Process = subprocess.Popen[bytes] | _Copy
+
+
+def _begun(count: int, question: Question) -> Sequence[_Process]:
+    """So many worker processes."""
+    if not stopping.may_fork() or count < 2:
+        return [_interpreter() for _ in range(count)]
+    with contextlib.suppress(SceneError):  # which its points have to say
+        Loop(question.scene, question.tolerance or question.scene.tolerance).warm_up()
+    copies: list[_Copy] = []
+    for _ in range(count):
+        copies.append(_Copy(copies))
+    return copies
+
+
+def _interpreter() -> subprocess.Popen[bytes]:
+    """A worker process of its own. Ctrl-C is for the process that started it, hence the own session."""
     path = [os.path.abspath(place) for place in sys.path]  # noqa: PTH100 - "" is the current folder
     pipe = subprocess.PIPE
-    process = subprocess.Popen([sys.executable, "-c", BEGIN.format(path=path)], stdin=pipe, stdout=pipe, start_new_session=True)
+    return subprocess.Popen([sys.executable, "-c", BEGIN.format(path=path)], stdin=pipe, stdout=pipe, start_new_session=True)
+
+
+def _served(
+    process: _Process, question: Question, waiting: deque[tuple[int, Mapping[str, Value]]], made: _Made
+) -> tuple[_Process, threading.Thread]:
+    """A worker process and the thread that serves it."""
     thread = threading.Thread(target=_serve, args=(process, question, waiting, made), daemon=True)
     thread.start()
     return process, thread
 
 
-def _serve(
-    process: subprocess.Popen[bytes], question: Question, waiting: deque[tuple[int, Mapping[str, Value]]], made: _Made
-) -> None:
+def _serve(process: _Process, question: Question, waiting: deque[tuple[int, Mapping[str, Value]]], made: _Made) -> None:
     """Have points computed until none waits; the one that a killed process had waits again."""
     assert process.stdin and process.stdout
     point = None
@@ -175,8 +236,9 @@ def work() -> None:
 def _receive(given: queue.SimpleQueue[Any]) -> None:
     """The end of the pipe, also in the middle of a point, is the end of this process."""
     try:
-        while True:
-            given.put(pickle.load(sys.stdin.buffer))
+        with os.fdopen(0, "rb", closefd=False) as points:
+            while True:
+                given.put(pickle.load(points))
     finally:
         os._exit(1)
 
