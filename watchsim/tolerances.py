@@ -60,6 +60,8 @@ LCP_RESIDUAL = 1e-9
 LCP_ROUNDING = 1e-13
 # Of what drives the problem: the same where loads are rounding, as the last resort. Large, small: as above.
 LCP_ROUGH = 1e-9
+# The same where that is not enough: in heaps of tens of bodies. Large, small: as above.
+LCP_ROUGHEST = 1e-6
 # Other paths of Lemke's method; unknowns (2^12 eliminations take milliseconds) and sets of modes (some tenths of a second) up
 # to which all are tried after these. Large: a problem without solution takes long; small: one that has one ends the run.
 LCP_PATHS, LCP_ENUMERATED, MODE_SETS = 8, 12, 50000

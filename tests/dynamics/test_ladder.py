@@ -25,6 +25,7 @@ from watchsim.dynamics.friction import (
 from watchsim.dynamics.lcp import Level, Solver
 from watchsim.jit import entry
 from watchsim.simulation.scratch import ContactWork, contact_work, contact_work_by_reference
+from watchsim.tolerances import LCP_ROUGH
 
 # Is each rung of the ladder right by itself, and together do they find a solution exactly when there is one?
 
@@ -48,7 +49,7 @@ def _asked(what, work, m, size, coefficient, b):
     elif what == COPOSITIVE:
         answer = int(_solve_copositive(m, size, problem))
     elif what == OTHER_PATHS:
-        answer = int(_detour(size, m > 0, problem))
+        answer = int(_detour(size, LCP_ROUGH if m > 0 else 0.0, problem))
     else:
         answer = int(enumerate_modes(m, size, problem))
     return answer

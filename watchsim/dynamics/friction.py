@@ -41,6 +41,7 @@ from watchsim.tolerances import (
     ACCELERATION_ROUNDING,
     LCP_PATHS,
     LCP_ROUGH,
+    LCP_ROUGHEST,
     LCP_ROUNDING,
     MODE_SETS,
     NO_DIRECTION,
@@ -345,7 +346,7 @@ def solve_contacts(m, elements, bearings, level, problem):
     (Stewart & Trinkle 1996; Anitescu & Potra 1997); Lemke's method on other paths; enumeration of the modes of small sets. What
     solves the problem is checked against the first form. Where many contacts are redundant their loads are rounding errors that
     may contradict each other: then an end of Lemke's method is taken that misses by no more than a billionth of the load that
-    drives the problem. If nothing helps, the caller stops and keeps the problem.
+    drives the problem, else by a millionth. If nothing helps, the caller stops and keeps the problem.
     """
     last, n = problem.last, m + 2 * elements
     last.contacts, last.elements, last.bearings, last.level = m, elements, bearings, level
@@ -370,11 +371,11 @@ def _solve_anew(m, elements, problem):
         solver = Solver.FAILED
         if elements > 0 and _solve_copositive(m, elements, problem):
             solver = Solver.COPOSITIVE
-        elif _detour(n, False, problem):
+        elif _detour(n, 0.0, problem):
             solver = Solver.DETOUR
         elif enumerate_modes(m, elements, problem):
             solver = Solver.ENUMERATED
-        elif _detour(n, True, problem):
+        elif _detour(n, LCP_ROUGH, problem) or _detour(n, LCP_ROUGHEST, problem):
             solver = Solver.INEXACT
     return solver.value
 
@@ -454,11 +455,11 @@ def keep_basis(b, m, elements, solver, problem):
 def _detour(n, rough, problem):
     """True if Lemke's method reaches a solution from another start, then in `problem.x`: ties and rounding fall otherwise.
 
-    `rough`: the usual start counts, too, and so does what misses the conditions by next to nothing.
+    `rough` > 0: the usual start counts, too, and so does what misses the conditions by no more than that share.
     """
-    for path in range(0 if rough else 1, LCP_PATHS + 1):
+    for path in range(0 if rough > 0.0 else 1, LCP_PATHS + 1):
         outcome = lemke_on_path(problem.A, problem.rhs, n, path, problem.lcp, problem.x)
-        if outcome == LcpOutcome.SOLVED or (rough and outcome == LcpOutcome.INEXACT and solves(n, LCP_ROUGH, problem.lcp)):
+        if outcome == LcpOutcome.SOLVED or (rough > 0.0 and outcome == LcpOutcome.INEXACT and solves(n, rough, problem.lcp)):
             return True
     return False
 

@@ -142,6 +142,7 @@ def hand_over(model, cells, state, options, scratch, record):
             keep_event(record, state.clock, state.counts, EventKind.HANDOVER, successor, -1, float(k))
             moved = True
     if moved:
+        state.instant.struck = 0
         # Take back what the way beyond the primitive's end has done to the velocities: normals differ by the turn there.
         m = place_contacts(model, state.regime.active, 0, state.instant.awake_contacts, event.pose, event.closed)
         inverse = scratch.work.system.inverse
@@ -158,6 +159,7 @@ def release_left(model, state, options, pose, record):
         k = state.regime.active[j]
         if extent_margin(model, k, pose) < -LEFT_PRIMITIVE * options.extent:
             state.regime.mode[k] = OPEN
+            instant.struck = 0
             keep_event(record, state.clock, state.counts, EventKind.OPEN, k, -1, 0.0)
             continue
         state.regime.active[kept] = k

@@ -116,11 +116,15 @@ def handle_event(model, cells, state, options, scratch, record):
         return code
     label_islands(model, listed, m, label)
     sort_by_island(model, label, m, listed, upto)
+    mark_disturbed(model, state, m, event)
     first = 0
     for island in range(len(label)):
         if label[island] != island:
             continue
         last = upto[first] if first < m and island_of(model, label, listed[first]) == island else first
+        if not event.disturbed[island]:
+            first = last
+            continue
         fill_inverse(model, state.regime.grip, scratch.work.system.inverse)
         closed = close_gaps(model, state, (first, last), options, scratch, record)
         code, r = resolve(model, state, island, closed, options, scratch, record)
@@ -132,6 +136,20 @@ def handle_event(model, cells, state, options, scratch, record):
     finish_event(model, state, in_force, options, scratch, record)
     state.instant.event_waits, state.instant.touched = 0, NO_CONTACT
     return Stop.RUNNING
+
+
+@kernel
+def mark_disturbed(model, state, m, event):
+    """Mark in `event.disturbed` the islands to decide anew: that of the contact that ended the step, those of new contacts.
+
+    What an island has decided holds until it ends there or something touches it. The m closed contacts are in `event.listed`.
+    """
+    struck, label = state.instant.struck - 1, event.label
+    event.disturbed[:] = 1 if struck < 0 else 0
+    for j in range(m):
+        k = event.listed[j]
+        if k == struck or state.regime.mode[k] == OPEN:
+            event.disturbed[island_of(model, label, k)] = 1
 
 
 @kernel
@@ -362,7 +380,7 @@ def _smooth_step(model, cells, state, options, end_time, scratch, record):
     state.instant.touched = contact
     event = contact >= 0 or leave <= length
     if event:
-        _note_end(state.regime.active, state.instant.awake_contacts, contact, code, scratch.ended)
+        state.instant.struck = 1 + _note_end(state.regime.active, state.instant.awake_contacts, contact, code, scratch.ended)
     return Stop.RUNNING, event
 
 
@@ -370,6 +388,7 @@ def _smooth_step(model, cells, state, options, end_time, scratch, record):
 def _note_end(active, awake_contacts, contact, code, out_ended):
     """Remember what ended the step: `KINDS` times the contact (or bearing) that did, plus the kind of its monitor.
 
+    Returns the contact, or NO_CONTACT where a bearing did.
     TOUCHED: it closed; BEARING: dry friction in the bearing of a coordinate holds or lets go. `code`: of the monitor that
     ended a coupled step.
     """
@@ -380,9 +399,11 @@ def _note_end(active, awake_contacts, contact, code, out_ended):
     elif code >= MONITORS * awake_contacts:
         what = KINDS * (code - MONITORS * awake_contacts) + BEARING
     else:
-        what = KINDS * active[code // MONITORS] + code % MONITORS
+        contact = active[code // MONITORS]
+        what = KINDS * contact + code % MONITORS
     out_ended.by[out_ended.number % RECENT] = what
     out_ended.number += 1
+    return contact
 
 
 @kernel

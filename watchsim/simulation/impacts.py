@@ -15,6 +15,7 @@ from watchsim.dynamics.bearings import begin_loads
 from watchsim.dynamics.delassus import apply, contact_velocities, copy, drive_through_contacts
 from watchsim.dynamics.friction import law_of
 from watchsim.dynamics.impact import energy_gain, impact, plastic_impact
+from watchsim.dynamics.lcp import Level
 from watchsim.jit import kernel
 from watchsim.simulation.closed_contacts import kinetic_energy
 from watchsim.simulation.modes import count_problems, decide, rate_rounding, replace, standing_bearings, track_peak_speed
@@ -79,29 +80,30 @@ def collide(model, state, island, m, options, jam_speed, scratch, record):
 
 @kernel
 def _solve(model, m, jam_speed, work, closed, room, out_u, out_counts):
-    """One impact with `room.restitution`; on an energy gain again with the smallest restitution, then with none.
+    """One impact with `room.restitution`; again with the smallest restitution, then with none, if it gains energy.
 
-    False if none is found: even without restitution an impact that gains energy is wrong.
+    So, too, where its expansion has no solution. False if none is found: one without restitution that gains energy is wrong.
     """
     kinetic, system, phases = kinetic_energy(model, room.before), work.system, work.phases
     for attempt in range(3):
         copy(room.before, out_u)
         solved = impact(model, closed, m, room.restitution, jam_speed, system, work.problem, phases, out_u)
         count_problems(work.problem, out_counts)
-        if not solved:
-            out_counts.lcp_failures += 1
-            return False
-        gain, terms = energy_gain(2 * m + work.problem.last.bearings, system.G, phases.rates, phases.impulse)
-        if gain <= ENERGY_GAIN * kinetic:
-            return True
-        if attempt == 2:
-            return bool(gain <= ENERGY_GAIN * terms)
+        if solved:
+            gain, terms = energy_gain(2 * m + work.problem.last.bearings, system.G, phases.rates, phases.impulse)
+            if gain <= ENERGY_GAIN * kinetic:
+                return True
+            if attempt == 2:
+                return bool(gain <= ENERGY_GAIN * terms)
+        elif work.problem.last.level != Level.EXPANSION:
+            break
         out_counts.energy_rescues += 1
         least = 1.0 if attempt == 0 else 0.0
         for i in range(m):
             least = min(least, room.restitution[i])
         for i in range(m):
             room.restitution[i] = least
+    out_counts.lcp_failures += 1
     return False
 
 

@@ -20,6 +20,7 @@ from watchsim.mechanism.compile import Compiled
 TALLIED = ("kinds", "beats", "moments", "last", "carried")
 TALLIED_LATER = ("late",)  # not in states of earlier versions: they begin blank
 LATER = ("returning", "returned", "row_a", "row_jerk", "since_row")  # the same of the state itself
+EARLIER_NUMBERS = 6  # integers of `Instant`; the next one decides all islands where it is zero
 # Of systems side by side: rows and events that wait to be merged, and how many of each system.
 AHEAD = ("ahead", "ahead_events", "ahead_counts")
 REQUESTED = ("method", "step", "tolerance")
@@ -92,6 +93,8 @@ class SavedState:
     def restore(self, arrays: Mapping[str, NDArray[Any]]) -> None:
         """Write the state into `arrays`; ValueError where another version of the package has saved it."""
         own = {**{name: np.zeros_like(arrays[name]) for name in LATER if name in arrays}, **self.arrays}
+        if own.get("numbers", np.zeros(0)).shape == (EARLIER_NUMBERS,):
+            own["numbers"] = np.append(own["numbers"], np.int64(0))
         shapes = {name: array.shape for name, array in own.items()}
         row = self.recorded.get("row", np.zeros(0)).shape in ((0,), (1 + 3 * len(arrays["q"]),))
         if shapes != {name: array.shape for name, array in arrays.items()} or not row:

@@ -271,6 +271,7 @@ class EventRoom(NamedTuple):
     peak_speed: Array  # largest magnitude of each velocity at this instant
     zero: Array  # m/s, by row of `closed`: the gap rate that counts as zero
     loose: Modes  # by coordinate: 1 where contacts in force allow the accelerations of its island
+    disturbed: Modes  # by island: 1 if its modes are to be decided
     waits: Modes  # by row of `closed`: 1 if it may wait behind a parallel one
     label: Integers  # by coordinate: its island
     listed: Integers  # the closed contacts, by island
@@ -422,6 +423,7 @@ def _event_room(n: int, bodies: int, contacts: int, room: int) -> EventRoom:
         peak_speed=np.zeros(n),
         zero=np.zeros(room),
         loose=np.zeros(n, np.int8),
+        disturbed=np.zeros(n, np.int8),
         waits=np.zeros(room, np.int8),
         label=np.zeros(n, np.int64),
         listed=np.zeros(room, np.int64),

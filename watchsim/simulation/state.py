@@ -154,6 +154,7 @@ class Instant:
     events: int  # handled at this instant
     touched: int  # the contact that has just closed, or NO_CONTACT
     decisions: int  # sets of modes decided at this instant
+    struck: int  # one more than the contact that has closed or whose mode has ended; 0: decide all islands
     lenience: float  # by how much more than usual forces and slips may miss their laws until the next instant
 
 
@@ -291,7 +292,7 @@ def new_state(model: Model, q: Array, u: Array) -> State:
 
 # As which plain arrays is a state saved, whatever its records are called?
 
-NUMBERS = 6  # integer fields of `Instant`; its lenience is an array of its own
+NUMBERS = 7  # integer fields of `Instant`; its lenience is an array of its own
 HITS = 2  # integer fields of `ReboundWatch`, the first
 
 
