@@ -42,7 +42,7 @@ def test_everything_of_a_scene(tmp_path: Path, capsys: pytest.CaptureFixture[str
         solid = trimesh.load(folder / f"{name}.stl")
         assert solid.volume == pytest.approx(1e9 * one.area * 0.2e-3, rel=2e-3)
     whole = trimesh.load(folder / "scene.glb")
-    assert len(whole.geometry) == 10
+    assert len(whole.geometry) == 11  # ten layers and the hairspring
     pivot = whole.graph.get("balance")[0][:3, 3]
     assert pivot == pytest.approx((0.0, 7.131281292110203e-3, 0.0), abs=1e-9)
 

@@ -20,8 +20,8 @@ from watchsim.geometry.loops import Loop
 from watchsim.geometry.meshes import Track, glb
 from watchsim.geometry.primitives import TURN, Arc, Line
 from watchsim.paths import profiles_dir
-from watchsim.render.keyframes import closed_solids, keyframes, placed_solids
-from watchsim.render.view import poses
+from watchsim.render.keyframes import bends, closed_solids, keyframes, placed_solids, ribbons
+from watchsim.render.view import hairsprings, poses
 from watchsim.results.folder import write_results
 from watchsim.scene.layer_heights import slabs
 from watchsim.scene.load import load
@@ -85,6 +85,33 @@ def test_the_animation_is_the_motion(profile: str, window: tuple[float, float]) 
         told = Slerp(t, Rotation.from_quat(turns))(np.clip((times - window[0]) / speed, 0.0, t[-1])).as_rotvec()[:, 2]
         off = np.remainder(told - frames[name][:, 2] + np.pi, 2.0 * np.pi) - np.pi
         assert np.abs(np.degrees(off)).max() < 0.05
+
+
+def test_a_hairspring_bends_in_the_animation_as_in_pictures() -> None:
+    run = simulate(load(PROFILES / "swiss_lever" / "scene.toml"), duration=0.4)
+    window, speed = (0.1, 0.4), 0.05
+    solids, tracks = placed_solids(run.scene, slabs(run.scene, 0.2e-3), 2e-6), keyframes(run, window, speed)
+    drawn = ribbons(run.scene, solids)
+    tree, blob = chunks(glb([*solids, *drawn], tracks, bends(run.scene, tracks, drawn)[1]))
+    (mesh,) = (mesh for mesh in tree["meshes"] if "weights" in mesh)
+    primitive = mesh["primitives"][0]
+    start = values(tree, blob, primitive["attributes"]["POSITION"])
+    ways = np.stack([values(tree, blob, target["POSITION"]) for target in primitive["targets"]])
+    (channel,) = (one for one in tree["animations"][0]["channels"] if one["target"]["path"] == "weights")
+    sampler = tree["animations"][0]["samplers"][channel["sampler"]]
+    t = values(tree, blob, sampler["input"])[:, 0]
+    shares = values(tree, blob, sampler["output"]).reshape(len(t), len(ways))
+    (spring,) = hairsprings(run.scene)
+    top = max(piece.mesh.bounds[1][2] for solid in solids for piece in solid.pieces) / 1e3
+    x, y = run.scene.body("balance").position
+    for instant in np.random.default_rng(3).uniform(*window, 40).tolist():
+        played_at = (instant - window[0]) / speed
+        weights = [np.interp(played_at, t, column) for column in shares.T]
+        seen = start + np.tensordot(weights, ways, 1)
+        frames = {name: rows[0] for name, rows in poses(run, np.array([instant])).items()}
+        line = spring.line(frames, len(seen) // 2 - 1) - (x, y)
+        assert np.abs(seen[: len(line), :2] - line).max() < 0.01 * spring.coil.outer
+        assert seen[:, 2].min() > top
 
 
 def test_a_track_that_turns_too_far_at_once_is_refused() -> None:

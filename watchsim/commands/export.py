@@ -166,12 +166,14 @@ def _contents(
             "sides. Mend the thickness in its solids or of --thickness, or leave solids out with --format dxf,svg."
         )
     if "glb" in formats:
-        from watchsim.render.keyframes import placed_solids
+        from watchsim.render.keyframes import bends, placed_solids, ribbons
 
         placed = placed_solids(scene, stacked, deviation)
         found.update((f"{stems[part.name]}.glb", glb([type(part)(part.name, part.pieces)])) for part in placed)
         if placed:
-            found["scene.glb"] = glb(placed, motion)
+            drawn = ribbons(scene, placed)
+            carried, bent = bends(scene, motion, drawn) if motion else ([], [])
+            found["scene.glb"] = glb([*placed, *drawn], [*motion, *carried], bent)
     if "stl" in formats:
         from watchsim.render.keyframes import closed_solids
 

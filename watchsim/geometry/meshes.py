@@ -51,7 +51,20 @@ class Track:
     angles: Array
 
 
-def add_motion(tracks: Sequence[Track], buffers: MutableMapping[str, bytes], tree: MutableMapping[str, Any]) -> None:
+@dataclass(frozen=True)
+class Bend:
+    """How the one mesh of a node bends: `shapes` (k, n, 3), m, of its vertices, the first that in which it is drawn, and at the
+    times t (s) the shares (len(t), k) of all of them."""
+
+    name: str
+    t: Array
+    shapes: Array
+    shares: Array
+
+
+def add_motion(
+    tracks: Sequence[Track], bends: Sequence[Bend], buffers: MutableMapping[str, bytes], tree: MutableMapping[str, Any]
+) -> None:
     """Add one animation to a scene that is being written: `buffers` and `tree` as trimesh hands them to its post-processor.
 
     ValueError where a track turns too far between two keys.
@@ -76,6 +89,18 @@ def add_motion(tracks: Sequence[Track], buffers: MutableMapping[str, bytes], tre
             output = _accessor(f"{track.name}.{path}", rows, kind, buffers, tree)
             channels.append({"sampler": len(samplers), "target": {"node": number, "path": path}})
             samplers.append({"input": times, "output": output, "interpolation": "LINEAR"})
+    for bend in bends:
+        number = nodes[bend.name]
+        mesh = tree["meshes"][tree["nodes"][number]["mesh"]]
+        ways = bend.shapes[1:] - bend.shapes[:1]
+        mesh["primitives"][0]["targets"] = [
+            {"POSITION": _accessor(f"{bend.name}.{k}", way, "VEC3", buffers, tree)} for k, way in enumerate(ways)
+        ]
+        mesh["weights"] = bend.shares[0, 1:].tolist()
+        times = _accessor(f"{bend.name}.t", bend.t, "SCALAR", buffers, tree)
+        output = _accessor(f"{bend.name}.shares", bend.shares[:, 1:].reshape(-1), "SCALAR", buffers, tree)
+        channels.append({"sampler": len(samplers), "target": {"node": number, "path": "weights"}})
+        samplers.append({"input": times, "output": output, "interpolation": "LINEAR"})
     if channels:
         tree["animations"] = [{"name": "motion", "samplers": samplers, "channels": channels}]
 
@@ -154,6 +179,11 @@ def revolved(profile: Iterable[Loop], deviation: float) -> trimesh.Trimesh | Non
     return _together(parts) if parts else None
 
 
+def sheet(points: Array, faces: NDArray[np.int64]) -> trimesh.Trimesh:
+    """A surface without thickness through points (n, 3), mm, in their order."""
+    return trimesh.Trimesh(points, faces, process=False)
+
+
 def laid(mesh: trimesh.Trimesh, foot: Point, direction: Point, height: float) -> trimesh.Trimesh:
     """The turned mesh with its axis in the plane through `foot` (metres) along `direction`, at the height `height` (metres)."""
     (x, y), (ux, uy) = foot, direction
@@ -167,10 +197,10 @@ def turned_about(mesh: trimesh.Trimesh, pivot: Point, angle: float) -> trimesh.T
     return mesh.copy().apply_transform(_pose(pivot, angle) @ _pose((-pivot[0], -pivot[1]), 0.0))
 
 
-def glb(bodies: Sequence[Placed], motion: Sequence[Track] = ()) -> bytes:
+def glb(bodies: Sequence[Placed], motion: Sequence[Track] = (), bends: Sequence[Bend] = ()) -> bytes:
     """A binary glTF scene in metres: one node per body at its pose, below it one per piece, with colours.
 
-    `motion` moves the nodes of the bodies that it names.
+    `motion` moves the nodes of the bodies that it names, `bends` the meshes of the pieces BODY.PIECE.
     """
     scene = trimesh.Scene()
     for body in bodies:
@@ -186,7 +216,7 @@ def glb(bodies: Sequence[Placed], motion: Sequence[Track] = ()) -> bytes:
     known = {body.name for body in bodies}
     moving = [track for track in motion if track.name in known]
     return trimesh.exchange.gltf.export_glb(
-        scene, buffer_postprocessor=functools.partial(add_motion, moving), tree_postprocessor=_linear_colours
+        scene, buffer_postprocessor=functools.partial(add_motion, moving, bends), tree_postprocessor=_linear_colours
     )
 
 

@@ -9,11 +9,25 @@ import math
 from collections.abc import Iterator, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
-from watchsim.geometry.meshes import MOST_TURN, Piece, Placed, Track, laid, plate, revolved, turned_about, united
+from watchsim.geometry.meshes import (
+    MM,
+    MOST_TURN,
+    Bend,
+    Piece,
+    Placed,
+    Track,
+    laid,
+    plate,
+    revolved,
+    sheet,
+    turned_about,
+    united,
+)
 from watchsim.render.palette import BLUED, BRASS, GILT, PLATE, RUBY, STEEL, Finish, finish, looks
 from watchsim.render.rows import kept_rows, off_line
-from watchsim.render.view import Window, poses, stretch
+from watchsim.render.view import Hairspring, Window, hairsprings, poses, stretch
 from watchsim.scene.layer_heights import Slab
 from watchsim.scene.scene import Body, Scene
 from watchsim.scene.solids import HAIRSPRING, LYING, UPRIGHT
@@ -64,6 +78,74 @@ def _track(name: str, t: Array, frames: Array) -> Track:
 
     kept = kept_rows(len(t), fits)
     return Track(name, t[kept], frames[kept, :2], frames[kept, 2])
+
+
+# A hairspring is a ribbon that stands on its edge above its balance. Between shapes some degrees apart its points go straight.
+
+SHAPES = math.radians(20.0)  # between two shapes: a point of the ribbon strays from its arc by 0.3 % of the spring's radius
+RIBBON = 300  # chords
+STANDS = 2.5  # widths of the strip that it is high, or
+HIGH = 0.015  # of its radius, whichever is more
+STRIP = "strip"
+
+
+def ribbons(scene: Scene, bodies: Sequence[Placed]) -> list[Placed]:
+    """The hairsprings that are drawn, as the scene has them at the start, each a body of its own above all `bodies`."""
+    top = max((float(piece.mesh.bounds[1][2]) for body in bodies for piece in body.pieces), default=0.0) / MM
+    frames = {body.name: np.array([*body.position, body.angle]) for body in at_start(scene).bodies}
+    found = []
+    known = {body.name for body in bodies}
+    for spring in (spring for spring in hairsprings(scene) if spring.body in known):
+        points, faces = _ribbon(spring, spring.turned(frames), top)
+        mesh = sheet(MM * points, faces)
+        x, y, _ = frames[spring.body].tolist()
+        turn = 0.0 if spring.on is None else float(frames[spring.on][2])
+        found.append(Placed(_name(spring), [Piece(STRIP, mesh, BLUED.line, True)], (x, y), turn))
+    return found
+
+
+def bends(scene: Scene, tracks: Sequence[Track], ribbons: Sequence[Placed]) -> tuple[list[Track], list[Bend]]:
+    """How the ribbons move with their carriers, and bend, by the tracks of the balances."""
+    own, springs = {track.name: track for track in tracks}, {_name(spring): spring for spring in hairsprings(scene)}
+    moved, bent = [], []
+    for ribbon in ribbons:
+        spring = springs[ribbon.name]
+        track = own[spring.body]
+        base = np.zeros(len(track.t)) if spring.on is None else np.interp(track.t, own[spring.on].t, own[spring.on].angles)
+        if spring.on is not None:
+            moved.append(Track(ribbon.name, track.t, track.places, base))
+        turned = track.angles - base - spring.rest
+        knots = np.linspace(turned.min(), turned.max(), 2 + int(float(np.ptp(turned)) / SHAPES))
+        # Between two keys the angle goes evenly: keys where it passes a shape make every share a straight line.
+        passing = [
+            t0 + (t1 - t0) * (knot - a) / (b - a)
+            for t0, t1, a, b in zip(track.t, track.t[1:], turned, turned[1:], strict=False)
+            for knot in knots[(knots > min(a, b)) & (knots < max(a, b))]
+        ]
+        t = np.union1d(track.t, passing)
+        t = t[np.concatenate(([True], np.diff(t.astype(np.float32)) > 0.0))]
+        angle = np.interp(t, track.t, turned)
+        height = float(ribbon.pieces[0].mesh.bounds[0][2]) / MM
+        drawn = np.asarray(ribbon.pieces[0].mesh.vertices) / MM
+        shapes = np.stack([drawn, *(_ribbon(spring, knot, height, lifted=False)[0] for knot in knots)])
+        shares = np.maximum(0.0, 1.0 - np.abs(angle[:, None] - knots) / (knots[1] - knots[0]))
+        bent.append(Bend(f"{ribbon.name}.{STRIP}", t, shapes, np.column_stack((1.0 - shares.sum(axis=1), shares))))
+    return moved, bent
+
+
+def _ribbon(spring: Hairspring, turned: float, height: float, lifted: bool = True) -> tuple[Array, NDArray[np.int64]]:
+    """Vertices (2 n, 3), m, in the frame that holds the stud, from `height` or a little above it, and faces to both sides."""
+    line = spring.coil.line(turned, RIBBON)
+    high = max(STANDS * spring.coil.width, HIGH * spring.coil.outer)
+    bottom = height + (0.5 * high if lifted else 0.0)
+    points = np.concatenate([np.column_stack((line, np.full(len(line), z))) for z in (bottom, bottom + high)])
+    k, n = np.arange(len(line) - 1), len(line)
+    one = np.concatenate((np.column_stack((k, k + 1, k + n)), np.column_stack((k + 1, k + n + 1, k + n))))
+    return points, np.concatenate((one, one[:, ::-1]))
+
+
+def _name(spring: Hairspring) -> str:
+    return f"hairspring of {spring.body}"
 
 
 METALS = ((12e3, GILT), (8.0e3, BRASS), (5e3, STEEL), (3e3, RUBY))  # kg/m³ from which on: gold, copper alloys, steel, stones
