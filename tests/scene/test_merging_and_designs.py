@@ -19,6 +19,7 @@ from made_scenes import drawing, square
 import watchsim as ws
 from watchsim import units
 from watchsim.construction.design import Conflict, Design, dim
+from watchsim.scene.assign import assign, paths_of
 from watchsim.scene.designed import chosen, kind_of, merged, number_of, with_si
 from watchsim.scene.errors import Faults, SceneError
 from watchsim.scene.load import assignments, changed, from_mapping, load
@@ -439,3 +440,22 @@ REFUSED_REPEATED_TABLES = [
 def test_what_cannot_be_is_refused(torque: str, why: str) -> None:
     with pytest.raises(SceneError, match=why):
         made(torque)
+
+
+def test_a_layer_with_points_and_blanks_stands_in_quotes(desk, good):
+    """Programs name layers after heights: "TEETH 1.30"."""
+    scene = load(desk.scene(good))
+    layer = scene.body("wheel").loops[0].layer
+    mapping = {"bodies": {"wheel": {"adjust": {"TEETH 1.30": {"turn": "0.1°"}}}}}
+    (path,) = paths_of(mapping)
+    assert path == 'bodies.wheel.adjust."TEETH 1.30".turn'
+    faults = Faults("--set")
+    assign(mapping, path, "0.2°", faults)
+    faults.raise_any()
+    assert mapping["bodies"]["wheel"]["adjust"] == {"TEETH 1.30": {"turn": "0.2°"}}
+    turned = scene.set(f'bodies.wheel.adjust."{layer}".turn', "10°")
+    assert turned.body("wheel").loops[0].edges[0].start != scene.body("wheel").loops[0].edges[0].start
+    assert assignments(['"design.lock"=2°', 'bodies.wheel.adjust."A.1".turn=1°']) == {
+        "design.lock": "2°",
+        'bodies.wheel.adjust."A.1".turn': "1°",
+    }

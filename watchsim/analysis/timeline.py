@@ -331,7 +331,7 @@ def _beat(run: Trajectory, stages: list[Stage]) -> Beat:
     return Beat(tuple(stages), tuple(friction_by_pair(run, ends)))
 
 
-NANO, KILO = 1e9, 1e-3
+NANO, KILO = 1e9, 1e-3  # bodies that reach 1000 °/s have their velocity in thousands
 WIDTH = 20
 
 
@@ -353,22 +353,28 @@ def _motion(run: Trajectory, beats_shown: list[Beat]) -> Iterator[str]:
     names = [str(bodies[k])[:13] for k in shown]
     yield f"Timeline, t = {beats_shown[0].start:.6f} s to {beats_shown[-1].end:.6f} s"
     start = beats_shown[0].first
-    yield f"angles in degrees and angular velocities in 1000 °/s, at the start of each phase; times in ms from the {start}"
+    stages = [stage for beat in beats_shown for stage in beat.stages]
+    fastest = [max(abs(rate) for one in stages for rate in (one.start_rates[k], one.end_rates[k])) for k in shown]
+    fast = [math.degrees(rate) >= 1.0 / KILO for rate in fastest]
+    yield f"angles and angular velocities at the start of each phase; times in ms from the {start}"
     yield f"{'':{WIDTH}}{'start':>9}{'length':>9} " + "".join(f" {name:>19}" for name in names)
-    yield f"{'':{WIDTH}}{'ms':>9}{'ms':>9} " + f" {'°':>10} {'1000°/s':>8}" * len(shown)
+    yield f"{'':{WIDTH}}{'ms':>9}{'ms':>9} " + "".join(f" {'°':>10} {'1000°/s' if one else '°/s':>8}" for one in fast)
     for beat in beats_shown:
         yield _heading(beat)
         for stage in beat.stages:
             phase = stage.phase
             times = f"{1e3 * (phase.start - beat.start):9.3f}{1e3 * (phase.end - phase.start):9.3f} "
-            yield f"  {title(stage):{WIDTH - 2}}{times}" + _places(phase.angles, stage.start_rates, shown)
+            yield f"  {title(stage):{WIDTH - 2}}{times}" + _places(phase.angles, stage.start_rates, shown, fast)
         last = beat.stages[-1]
-        places = _places(last.end_angles, last.end_rates, shown)
+        places = _places(last.end_angles, last.end_rates, shown, fast)
         yield f"  {'end':{WIDTH - 2}}{1e3 * (beat.end - beat.start):9.3f}{'':9} {places}"
 
 
-def _places(angles: Triple, rates: Triple, shown: list[int]) -> str:
-    return "".join(f" {math.degrees(angles[k]):10.3f} {KILO * math.degrees(rates[k]):8.3f}" for k in shown)
+def _places(angles: Triple, rates: Triple, shown: list[int], fast: list[bool]) -> str:
+    units = [KILO if one else 1.0 for one in fast]
+    return "".join(
+        f" {math.degrees(angles[k]):10.3f} {unit * math.degrees(rates[k]):8.3f}" for k, unit in zip(shown, units, strict=True)
+    )
 
 
 def _heading(beat: Beat) -> str:

@@ -12,6 +12,7 @@ from typing import Any
 from watchsim.scene.errors import Faults
 from watchsim.scene.keys import (
     DESIGN,
+    DOTTED,
     DRIVEN,
     LAYERS,
     LISTED,
@@ -24,11 +25,13 @@ from watchsim.scene.keys import (
     TABLES_LISTED,
     TRAIN,
     Key,
+    dotted,
     entered,
     key_at,
     nearest,
     path_of,
     steps_into,
+    words_of,
 )
 from watchsim.scene.scene import MOTIONS, Scene
 from watchsim.scene.values import shown
@@ -89,14 +92,14 @@ def paths_of(mapping: Mapping[str, Any]) -> dict[str, str | float]:
     """Every dotted path of a scene's mapping that `--set` can change and that leads to one value, with that value."""
     found: dict[str, str | float] = {}
 
-    def enter(path: str, value: object) -> None:
+    def enter(path: tuple[str, ...], value: object) -> None:
         inside = value.items() if isinstance(value, Mapping) else enumerate(value) if isinstance(value, list) else ()
         for step, one in inside:
-            enter(f"{path}.{step}" if path else str(step), one)
+            enter((*path, str(step)), one)
         if isinstance(value, str | int | float):
-            found[path] = value
+            found[".".join(path) if path[0] in DOTTED else dotted(path)] = value
 
-    enter("", {name: value for name, value in mapping.items() if name not in ("lock", "expect")})
+    enter((), {name: value for name, value in mapping.items() if name not in ("lock", "expect")})
     return found
 
 
@@ -167,7 +170,7 @@ def motion_of(bodies: object, name: object) -> str:
 
 def dimension_of(scene: Scene, key: str) -> Dimension | None:
     """What kind of quantity the scene holds at a dotted path; None where it is no quantity, or there is no such path."""
-    path = tuple(key.split("."))
+    path = words_of(key)
     if path[0] == DESIGN and len(path) == 2:
         return _of_design(scene, path[1])
     found = key_at(path)

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import difflib
 import math
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
@@ -492,10 +493,23 @@ SECTIONS: Keys = {
 }
 
 
+_WORD = re.compile(r'"[^"]*"|[^."]+')
+
+
+def words_of(key: str) -> tuple[str, ...]:
+    """The words of a dotted path; one with points in it stands in quotes, as in bodies.lever.adjust."STONES 1.30".turn."""
+    return tuple(word.strip('"') for word in _WORD.findall(key)) if '"' in key else tuple(key.split("."))
+
+
+def dotted(words: Iterable[str]) -> str:
+    """The path of these words."""
+    return ".".join(f'"{word}"' if "." in word else word for word in words)
+
+
 def path_of(key: str) -> tuple[str, ...]:
-    """The words of a dotted path; the names below [tolerances] and [expect] are dotted themselves, and one word."""
-    first, *rest = key.split(".")
-    return (first, ".".join(rest[:-1]), rest[-1]) if first in DOTTED and len(rest) > 2 else (first, *rest)
+    """The same; the names below [tolerances] and [expect] are dotted themselves, and one word."""
+    first, *rest = words_of(key)
+    return (first, dotted(rest[:-1]), rest[-1]) if first in DOTTED and len(rest) > 2 else (first, *rest)
 
 
 def key_at(path: tuple[str, ...]) -> Key | None:

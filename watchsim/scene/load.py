@@ -16,7 +16,7 @@ from watchsim.paths import profiles_dir
 from watchsim.scene.assign import assign
 from watchsim.scene.designed import with_design
 from watchsim.scene.errors import Fault, Faults, SceneError
-from watchsim.scene.keys import LISTED, LOCK, SECTIONS
+from watchsim.scene.keys import LISTED, LOCK, SECTIONS, words_of
 from watchsim.scene.read_bodies import read_bodies
 from watchsim.scene.read_contacts import read_contacts
 from watchsim.scene.read_forces import read_bearings, read_damping, read_line_springs, read_springs, read_torques
@@ -125,7 +125,7 @@ def changed(scene: Scene, changes: Mapping[str, object], faults: Faults | None =
         changes = implied
     mapping = copy.deepcopy(scene.source)
     for key in implied:
-        body, what, _ = key.split(".")[1:]
+        body, what, _ = words_of(key)[1:]
         pair = {"position": scene.body(body).position, "centre_of_mass": scene.body(body).centre_of_mass}[what]
         mapping["bodies"][body][what] = [f"{one!r} m" for one in pair]
     return from_mapping(mapping, scene.path, faults or Faults(name, changed=frozenset(changes)), changes)
@@ -133,7 +133,7 @@ def changed(scene: Scene, changes: Mapping[str, object], faults: Faults | None =
 
 def unwritten(mapping: Mapping[str, Any], key: str) -> bool:
     """Does that key name one value of a pair that the drawing gives and the scene does not write?"""
-    path, bodies = key.split("."), mapping.get("bodies")
+    path, bodies = words_of(key), mapping.get("bodies")
     if len(path) != 4 or path[0] != "bodies" or path[2] not in ("position", "centre_of_mass") or "design" in mapping:
         return False
     entry = bodies.get(path[1]) if isinstance(bodies, dict) else None
@@ -175,7 +175,7 @@ def assignments(texts: Iterable[str]) -> dict[str, object]:
     found: dict[str, object] = {}
     for text in texts:
         key, equals, value = (part.strip() for part in text.partition("="))
-        key = key.replace('"', "")  # "design.lock" is written with quotes below [tolerances]
+        key = key.strip('"') if key.count('"') == 2 and key[0] == key[-1] else key  # "design.lock", as below [tolerances]
         if not equals or not key or not value:
             raise SceneError([Fault(text, 'write KEY=VALUE, such as "torques.0.value=-1.2 µN·m"', place="--set")])
         found[key] = _literal(text, value) if value[0] in "[{\"'" else value

@@ -22,7 +22,7 @@ from watchsim.geometry.variation import fold, grown
 from watchsim.scene.assign import dimension_of
 from watchsim.scene.errors import Faults
 from watchsim.scene.forces import CONSTANT
-from watchsim.scene.keys import TEETH, TOLERANCE, key_at, nearest
+from watchsim.scene.keys import TEETH, TOLERANCE, dotted, key_at, nearest, words_of
 from watchsim.scene.scene import Correlation, Scene, Tolerance
 from watchsim.scene.values import Table, shown
 from watchsim.units import LENGTH, NUMBER, Dimension, UnitError, parse, split
@@ -117,16 +117,15 @@ def _as_text(part: str, source: str) -> object:
 
 def full_key(name: str, bodies: Mapping[str, Any]) -> str:
     """The dotted path of a tolerance: "wheel.TEETH.offset" is bodies.wheel.adjust.TEETH.offset."""
-    body, _, rest = name.partition(".")
-    layer, dot, what = rest.partition(".")
-    if body not in bodies or key_at(tuple(name.split("."))) is not None or not dot:
+    body, *rest = words_of(name)
+    if body not in bodies or key_at((body, *rest)) is not None or len(rest) < 2:
         return name
-    return f"bodies.{body}.teeth.{what}" if layer == "teeth" else f"bodies.{body}.adjust.{layer}.{what}"
+    return dotted(("bodies", body, "teeth", *rest[1:]) if rest[0] == "teeth" else ("bodies", body, "adjust", *rest))
 
 
 def nominal_at(scene: Scene, key: str) -> Any:
     """What the scene holds at a dotted path as in its file: a text, a number; the default where it says nothing."""
-    path, value = key.split("."), scene.source
+    path, value = words_of(key), scene.source
     for i, step in enumerate(path):
         inside: Any = value[int(step)] if isinstance(value, list) and step.isdigit() and int(step) < len(value) else None
         inside = value.get(step) if isinstance(value, dict) else inside
@@ -242,7 +241,7 @@ def _sigma(table: Table, shape: str, half: float, dimension: Dimension) -> float
 
 def _count(scene: Scene, key: str, table: Table) -> int:
     """How many values are drawn: one for each tooth, or one."""
-    path = key.split(".")
+    path = words_of(key)
     each = table.mapping.get("each", False)
     if not isinstance(each, bool):
         table.fault("each", "write each = true, or leave it out", with_value=True)

@@ -13,6 +13,7 @@ import numpy as np
 
 from watchsim.scene.assign import dimension_of
 from watchsim.scene.errors import Fault, SceneError
+from watchsim.scene.keys import words_of
 from watchsim.scene.scene import Scene
 from watchsim.units import NUMBER, Dimension, UnitError, parse, split, to
 
@@ -52,7 +53,7 @@ PLACES = ("x", "y")
 def in_words(key: str) -> str:
     """A dotted path as it is said: "bodies.wheel.position.1" is "wheel position y", "torques.0.value" is "torque 1 value"."""
     said: list[str] = []
-    for part in key.split("."):
+    for part in words_of(key):
         if not part.isdigit():
             said += [] if part == "adjust" or (not said and part in ("design", "bodies")) else [part.replace("_", " ")]
         elif said and said[-1] == "position" and int(part) < len(PLACES):

@@ -12,7 +12,7 @@ from typing import Any
 
 from watchsim.displays import notebook_html
 from watchsim.scene.errors import Fault, SceneError
-from watchsim.scene.keys import DESIGN, nearest
+from watchsim.scene.keys import DESIGN, nearest, words_of
 from watchsim.scene.read_settings import FUNCTION
 from watchsim.scene.scene import Scene
 from watchsim.studies.axes import dimension_of
@@ -141,7 +141,7 @@ def unit_of(held: object, dimension: Dimension) -> str:
 def value_at(scene: Scene, key: str) -> Any:
     """What the scene has at a dotted path; None where it has nothing there."""
     held: Any = scene.source
-    for step in key.split("."):
+    for step in words_of(key):
         if isinstance(held, dict):
             held = held.get(step)
         elif isinstance(held, (list, tuple)) and step.isdigit() and int(step) < len(held):

@@ -19,7 +19,7 @@ from watchsim.construction.design import Dimension as DesignDimension
 from watchsim.displays import notebook_html
 from watchsim.scene.assign import dimension_of
 from watchsim.scene.errors import Fault, SceneError
-from watchsim.scene.keys import DESIGN
+from watchsim.scene.keys import DESIGN, words_of
 from watchsim.scene.roles import nominal_frequency
 from watchsim.scene.scene import Body, Scene
 from watchsim.studies.axes import Value
@@ -112,7 +112,7 @@ def quantities(scene: Scene) -> tuple[Quantity, ...]:
 
 def quantity_at(scene: Scene, key: str, value: Any) -> Quantity | None:
     """The quantity at a path that holds that value; None where it is none, or no dimension of the mechanism."""
-    path, dimension = key.split("."), dimension_of(scene, key)
+    path, dimension = words_of(key), dimension_of(scene, key)
     if dimension is None or LEFT_OUT & set(path) or _is_start(scene, path) or (path[0] == "springs" and "draw" in path):
         return None
     if path[0] == DESIGN and (path[-1] in OF_DESIGN or _of_design(scene, path[-1]).count):
@@ -125,7 +125,7 @@ def quantity_at(scene: Scene, key: str, value: Any) -> Quantity | None:
     return Quantity(key, number, dimension, _step(number, dimension), change, words, *_bounds(scene, path))
 
 
-def _bounds(scene: Scene, path: list[str]) -> tuple[float | None, float | None]:
+def _bounds(scene: Scene, path: Sequence[str]) -> tuple[float | None, float | None]:
     if path[0] != DESIGN:
         return BOUNDED.get(path[-1], (None, None))
     one = _of_design(scene, path[-1])
@@ -149,7 +149,7 @@ def _leaves(value: Any, path: str) -> Iterator[tuple[str, Any]]:
         yield path, value
 
 
-def _is_start(scene: Scene, path: list[str]) -> bool:
+def _is_start(scene: Scene, path: Sequence[str]) -> bool:
     """Where a moving body starts decides nothing about a cycle."""
     if path[0] != "bodies":
         return False
