@@ -5,6 +5,8 @@ Looked at between slices, at times that depend on nothing but the scene, so that
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from watchsim.mechanism.compile import Compiled
@@ -34,8 +36,10 @@ class Foregone:
         self._idle = 0
         self.next = self.every
 
-    def look(self, time: float, coordinates: np.ndarray, passed: float) -> bool:
-        """Is it over at `time` (s), at these coordinates? `passed`: when the oscillator last passed its rest position, s."""
+    def look(self, time: float, coordinates: np.ndarray, passed: Callable[[], float]) -> bool:
+        """Is it over at `time` (s), at these coordinates? `passed`: when the oscillator last passed its rest position, s; only
+        asked where the wheel stands.
+        """
         if time < self.next:
             return False
         self.next = (time // self.every + 1.0) * self.every
@@ -49,7 +53,7 @@ class Foregone:
             return bool(self.words)
         teeth = way / self._pitch
         let_go = PERIODS * (time - since) / self.every + 1.0
-        self._idle = self._idle + 1 if passed < since and abs(teeth) < 0.25 else 0
+        self._idle = self._idle + 1 if abs(teeth) < 0.25 and passed() < since else 0
         if teeth > RACES * let_go:
             self.words = f"{self._wheel} races, {teeth:.3g} teeth from t = {since:.4g} s to {time:.4g} s"
         elif self._idle >= LOOKS:

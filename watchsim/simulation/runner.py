@@ -407,8 +407,12 @@ class Run:
         time = float(self.state.clock.time)
         if self.foregone is None or time < self.foregone.next:
             return False
+        return self.foregone.look(time, self.state.q, self._last_passage)
+
+    def _last_passage(self) -> float:
+        """When the oscillator last passed its rest position, s."""
         self.flush()
-        return self.foregone.look(time, self.state.q, float(self.tally.last[0]))
+        return float(self.tally.last[0])
 
     def failure(self) -> dict[str, Any]:
         """What is known of the problem that nothing solved."""
