@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import math
+import pickle
 from dataclasses import replace
 from pathlib import Path
 
@@ -16,6 +17,7 @@ from watchsim.scene.errors import Faults, SceneError
 from watchsim.scene.forces import Contact, Damping, LineSpring, Side, Spring, Torque
 from watchsim.scene.keys import RUN
 from watchsim.scene.load import load
+from watchsim.scene.outlines import forget_drawings
 from watchsim.scene.read_settings import read_record
 from watchsim.scene.roles import Oscillator
 from watchsim.scene.scene import (
@@ -438,3 +440,21 @@ def test_a_locked_scene_refuses_drawings_that_have_changed(tmp_path: Path) -> No
                 load(path)
         else:
             assert load(path).bodies
+
+
+def test_a_scene_keeps_the_drawings_that_it_was_read_with(tmp_path, monkeypatch):
+    """A study goes on when its drawings are edited or taken away, from another folder, and on another machine."""
+    (tmp_path / "desk").mkdir()
+    for one in (ws.profiles_dir() / "bench_lever").iterdir():
+        (tmp_path / "desk" / one.name).write_bytes(one.read_bytes())
+    monkeypatch.chdir(tmp_path)
+    scene = ws.load("desk")
+    expected = scene.set("bodies.lever.position.1", "2.8 mm")
+    for name in scene.drawings:
+        (tmp_path / "desk" / name).unlink()
+    (tmp_path / "elsewhere").mkdir()
+    monkeypatch.chdir(tmp_path / "elsewhere")
+    forget_drawings()
+    assert pickle.loads(pickle.dumps(scene)).set("bodies.lever.position.1", "2.8 mm") == expected
+    with pytest.raises(SceneError, match="there is no such file"):
+        scene.set("bodies.lever.drawing", "other.dxf")

@@ -148,11 +148,11 @@ def test_a_study_stops_once_the_yield_is_known_closely_enough(desk):
 def test_rare_failures_of_a_watch_are_those_of_plain_sampling(desk, whole):
     """The share of watches below a limit in the tail: 512 that are drawn mostly near it against 4096 drawn as they are made."""
     amplitudes = whole.outputs["amplitude_deg"]
-    limit = f"{amplitudes.mean - 2.3 * amplitudes.sigma:.4f}°"
+    limit = f"{amplitudes.mean - 1.9 * amplitudes.sigma:.4f}°"
     scene = changed(ws.load(desk), {"expect.amplitude.min": limit})
     plain, near = ws.tolerance(scene, 4096, workers=2), ws.tolerance(scene, 512, importance=True, workers=2)
     failing = 1.0 - plain.yield_
-    assert 5e-4 < failing < 2e-2
+    assert 5e-4 < failing < 4e-2
     half = [0.5 * (one.yield_high - one.yield_low) for one in (plain, near)]
     assert half[1] < half[0]
     assert abs(near.yield_ - plain.yield_) < 1.5 * math.hypot(*half)

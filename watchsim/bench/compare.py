@@ -18,7 +18,7 @@ from watchsim.contact.cells import forget
 from watchsim.mechanism.compile import compile_scene
 from watchsim.paths import profiles_dir
 from watchsim.scene.load import load
-from watchsim.scene.outlines import cached_drawing
+from watchsim.scene.outlines import forget_drawings
 from watchsim.scene.scene import Recording, Scene
 from watchsim.simulation import EVENT_DRIVEN, MOREAU
 from watchsim.simulation.recording import half_swings, since_two_before
@@ -194,7 +194,7 @@ def whole(scenario: Scenario, method: str, setting: float) -> Whole:
         raise ValueError(f"{scenario.name} has no scene file to be read")
     _once(scenario, scenario.scene.path, method, setting, 0.01)  # compiled code and libraries are loaded
     forget()
-    cached_drawing.cache_clear()
+    forget_drawings()
     times = [_once(scenario, scenario.scene.path, method, setting, scenario.duration) for _ in range(2)]
     return Whole(scenario.name, method, setting, scenario.duration, *times[0], *times[1])
 

@@ -38,11 +38,16 @@ FAR_OFF = 0.1  # of the frequency of small swings: what a rate may be measured a
 
 
 def from_mapping(
-    mapping: dict[str, Any], path: Path | None, faults: Faults | None = None, changes: Mapping[str, object] | None = None
+    mapping: dict[str, Any],
+    path: Path | None,
+    faults: Faults | None = None,
+    changes: Mapping[str, object] | None = None,
+    drawings: Mapping[str, bytes] | None = None,
 ) -> Scene:
     """The scene of a TOML mapping; `path` is the file it stands for, drawings are looked for beside it.
 
-    `changes` are made first, in the mapping itself; of a scene with a design after it has been put together.
+    `changes` are made first, in the mapping itself; of a scene with a design after it has been put together. `drawings` are
+    those that need not be looked for.
     """
     faults = faults or Faults(str(path) if path else "scene")
     folder = path.parent if path else Path()
@@ -56,7 +61,7 @@ def from_mapping(
         for key, value in changes.items():
             assign(mapping, key, value, faults)
     heading = read_heading(mapping, faults)
-    read = read_bodies(mapping.get("bodies", {}), folder, faults, made)
+    read = read_bodies(mapping.get("bodies", {}), folder, faults, {**(drawings or {}), **(made or {})})
     if not read.bodies:  # all that names one would be wrong
         mapping = {section: value for section, value in mapping.items() if section not in LISTED}
     bodies, sound = with_trains(mapping, read.bodies, faults), read.sound
@@ -114,11 +119,17 @@ def from_mapping(
 
 
 def changed(scene: Scene, changes: Mapping[str, object], faults: Faults | None = None) -> Scene:
-    """The scene with those dotted keys changed and everything checked again; SceneError lists what does not fit."""
+    """The scene with those dotted keys changed and everything checked again; SceneError lists what does not fit.
+
+    Its drawings stay those that were read, whatever has become of the files since.
+    """
     name = str(scene.path) if scene.path else "scene"
+    designed = scene.written.made if scene.written is not None else ()
+    held = {drawing: scene.drawings[drawing] for drawing in scene.drawings if drawing not in designed}
+    held = {drawing: data for drawing, data in held.items() if data}
     if scene.written is not None:
         later = {**scene.written.changes, **changes}
-        return from_mapping(scene.written.mapping, scene.path, Faults(name, changed=frozenset(later)), later)
+        return from_mapping(scene.written.mapping, scene.path, Faults(name, changed=frozenset(later)), later, held)
     implied = {key: value for key, value in changes.items() if unwritten(scene.source, key)}
     if 0 < len(implied) < len(changes):  # the others may move what the drawing implies, as a new pivot does
         scene = changed(scene, {key: value for key, value in changes.items() if key not in implied})
@@ -128,7 +139,7 @@ def changed(scene: Scene, changes: Mapping[str, object], faults: Faults | None =
         body, what, _ = words_of(key)[1:]
         pair = {"position": scene.body(body).position, "centre_of_mass": scene.body(body).centre_of_mass}[what]
         mapping["bodies"][body][what] = [f"{one!r} m" for one in pair]
-    return from_mapping(mapping, scene.path, faults or Faults(name, changed=frozenset(changes)), changes)
+    return from_mapping(mapping, scene.path, faults or Faults(name, changed=frozenset(changes)), changes, held)
 
 
 def unwritten(mapping: Mapping[str, Any], key: str) -> bool:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 import re
+from collections import OrderedDict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -24,9 +24,9 @@ from watchsim.scene.keys import SHAPES, closest, nearest
 from watchsim.scene.placing import adjusted, given_pivot, marked_pivot, with_teeth
 from watchsim.scene.values import UNREADABLE, Table, shown
 
-# Where do drawings come from that a design makes, without a file?
+# Where do drawings come from that need no file: those that a design makes, and those of a scene that was read before?
 
-Made = Mapping[str, Sheet]  # name of a drawing in the scene -> the sheet
+Made = Mapping[str, Sheet | bytes]  # name of a drawing in the scene -> the sheet, or what the file held
 
 
 # Which outline does a shape written into the scene have: a circle, a polygon, a line?
@@ -336,8 +336,8 @@ def _open(table: Table, folder: Path, made: Made) -> Drawing | None:
     name = table.text("drawing")
     if not name and table.mapping["drawing"] != "":  # no text: noted
         return None
-    path = folder / name
-    if path.is_dir() and name not in made:
+    path, known = folder / name, made.get(name)
+    if path.is_dir() and known is None:
         there = ", ".join((Path(name) / file).as_posix() for file in _drawings(path)) or "a DXF or SVG file"
         what = "this is a folder; the" if name else "the"
         table.fault("drawing", f"{what} name of a drawing is needed here: {there}", with_value=True)
@@ -346,13 +346,16 @@ def _open(table: Table, folder: Path, made: Made) -> Drawing | None:
     stated = table.text("units")
     units = stated if isinstance(table.mapping.get("units"), str) else None
     section = table.quantity("section") if "section" in table else None
-    if name in made and not math.isnan(snap):
-        return drawing_of(made[name], name, snap)
-    if not path.is_file() or math.isnan(snap):
-        if not path.is_file():
+    if isinstance(known, Sheet) and not math.isnan(snap):
+        return drawing_of(known, name, snap)
+    missing = known is None and not path.is_file()
+    if missing or math.isnan(snap):
+        if missing:
             table.fault("drawing", f"there is no such file{_similar(path)} (looked for {path})", with_value=True)
         return None
     try:
+        if isinstance(known, bytes):
+            return cached_drawing(path, units, snap, section, None, known)
         stamp = path.stat()
         return cached_drawing(path, units, snap, section, (stamp.st_mtime_ns, stamp.st_size))
     except ValueError as error:
@@ -362,12 +365,37 @@ def _open(table: Table, folder: Path, made: Made) -> Drawing | None:
     return None
 
 
-@lru_cache(maxsize=64)
-def cached_drawing(path: Path, units: str | None, snap: float, section: float | None, _stamp: tuple[int, int]) -> Drawing:
-    """Read once per version of the file: a parameter study loads the same scene thousands of times."""
-    from watchsim.drawing.read import read
+KEPT = 64  # drawings
+_kept: OrderedDict[tuple[object, ...], tuple[tuple[int, int] | None, Drawing]] = OrderedDict()
 
-    return read(path, units=units, snap=snap, section=section)
+
+def cached_drawing(
+    path: Path, units: str | None, snap: float, section: float | None, stamp: tuple[int, int] | None, data: bytes | None = None
+) -> Drawing:
+    """Read once per version of the file: a parameter study loads the same scene thousands of times.
+
+    `stamp` tells the version on the disk. `data`, where given, is what it held when the scene was read: it may have changed
+    since, or be on another machine.
+    """
+    from watchsim.drawing.read import read, read_data
+
+    key = (path, units, snap, section)
+    last, found = _kept.pop(key, (None, None))
+    if found is None or (last != stamp if data is None else found.data != data):
+        last = stamp
+        if data is None:
+            found = read(path, units=units, snap=snap, section=section)
+        else:
+            found = read_data(data, path, units, snap, section=section)
+    _kept[key] = last, found
+    while len(_kept) > KEPT:
+        _kept.popitem(last=False)
+    return found
+
+
+def forget_drawings() -> None:
+    """Drop all that is known, for measurements and tests."""
+    _kept.clear()
 
 
 def _similar(path: Path) -> str:
