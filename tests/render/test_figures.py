@@ -34,7 +34,7 @@ from watchsim.render.marks import clock
 from watchsim.render.palette import looks
 from watchsim.render.parts import parts
 from watchsim.render.rows import envelope
-from watchsim.render.style import passing
+from watchsim.render.style import passing, with_room
 from watchsim.scene.scene import Body, Scene
 
 
@@ -552,3 +552,9 @@ def test_what_goes_to_and_fro_too_often_is_drawn_as_its_envelope() -> None:
     assert np.allclose(high, np.interp(x, t, swell), atol=0.02) and np.allclose(low, -high, atol=0.02)
     assert envelope(t, swell * np.sin(math.tau * 0.1 * t), 100.0) == []
     assert envelope(t, np.where(t < 50.0, np.sin(math.tau * 4.0 * t), 0.0), 100.0) == []  # rests half of the time
+
+
+def test_an_axis_of_nothing_but_zeros_has_round_ends() -> None:
+    assert with_room(0.0, 0.0, 0.08, 1e-6, 1.0) == (-1.0, 1.0)
+    low, high = with_room(1e-12, 2e-12, 0.08, 0.1, 1.0)
+    assert low < -0.04 and high > 0.04  # noise does not fill a panel

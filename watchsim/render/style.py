@@ -168,8 +168,11 @@ def limits(axes: Axes, low: float, high: float, share: float = 0.08, flat: float
 def with_room(low: float, high: float, share: float, flat: float, unit: float) -> tuple[float, float]:
     """From where to where an axis goes that shows values from `low` to `high`.
 
-    It leaves `share` of their range on both sides, and is no shorter than the part `flat` of the largest, or of `unit`.
+    It leaves `share` of their range on both sides, and is no shorter than the part `flat` of the largest, or of `unit`; what is
+    nothing but zero has an axis from −1 to 1.
     """
+    if low == high == 0.0:
+        return -1.0, 1.0
     room = max(share * (high - low), 0.5 * flat * max(abs(low), abs(high), unit))
     return low - room, high + room
 
