@@ -209,6 +209,16 @@ FAULTS = [
 ]
 
 
+def test_another_study_is_refused_before_anything_is_computed(desk, whole, monkeypatch):
+    def never(*_, **__):
+        raise AssertionError("a limit cycle was looked for")
+
+    monkeypatch.setattr("watchsim.studies.tolerance_plan.steady", never)
+    other = changed(ws.load(desk), {"torques.0.value": "-5.1 µN·m"})
+    with pytest.raises(ValueError, match="another study"):
+        ws.tolerance(other, 48, folder=desk / "whole", resume=True)
+
+
 def test_all_faults_are_reported_at_once(desk):
     base = (desk / "scene.toml").read_text(encoding="utf-8").partition("[tolerances]")[0]
     for line, message in FAULTS:

@@ -66,8 +66,11 @@ def run(args: argparse.Namespace) -> int:
     with contextlib.ExitStack() as held:
         folder = study_folder(args, scene, what, held)
         with stopping.keeping():
+            resumed = folder if args.resume else None
+            plan = plan_of(
+                scene, duration=duration, tolerance=args.tol, seed=args.seed, importance=args.importance, resumed=resumed
+            )
             executor = executor_of(args, args.samples)
-            plan = plan_of(scene, duration=duration, tolerance=args.tol, seed=args.seed, importance=args.importance)
             for key in plan.not_judged:
                 say(f'Note: samples are not judged by "{key}", which they do not give.')
             done = watched(

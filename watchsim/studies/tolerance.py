@@ -72,7 +72,8 @@ def tolerance(  # noqa: PLR0913 - options, by name
     count, width = checked_samples(samples), half_width(until)
     if shard is not None and not 1 <= shard[0] <= shard[1]:
         raise ValueError(f"shard: write (3, 64) for the third of 64, not {shard}")
-    plan = plan_of(scene, duration=seconds(duration), tolerance=tolerance, seed=seed, importance=importance)
+    resumed = Path(folder) if resume and folder is not None else None
+    plan = plan_of(scene, duration=seconds(duration), tolerance=tolerance, seed=seed, importance=importance, resumed=resumed)
     executor = chosen(workers, scheduler)
     return made(plan, count, executor, until=width, shard=shard, folder=folder, resume=resume, progress=progress)
 

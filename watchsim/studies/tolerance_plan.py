@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -20,7 +21,7 @@ from watchsim.studies.sampling import Floats, Shifted, Space
 from watchsim.studies.sensitivity import fixed_nominal
 from watchsim.studies.steady import steady
 from watchsim.studies.sweep import study_of
-from watchsim.studies.workers import scene_digest
+from watchsim.studies.workers import same_study, scene_digest
 from watchsim.units import FREQUENCY, known_unit
 
 NUDGE = 0.05  # of the share below: how far a dimension is moved either way for the linear prediction
@@ -121,8 +122,12 @@ def plan_of(
     tolerance: float | None = None,
     seed: int = 0,
     importance: bool = False,
+    resumed: Path | None = None,
 ) -> Plan:
-    """The study of a scene; SceneError where it has no tolerances, or is none without them."""
+    """The study of a scene; SceneError where it has no tolerances, or is none without them.
+
+    `resumed`: the folder of a study that shall be gone on with; ValueError where that is another one.
+    """
     if not scene.tolerances:
         message = 'this scene has no tolerances. Write e.g. "contacts.0.friction" = { limits = "±0.03" } below [tolerances]'
         raise SceneError([Fault("tolerances", message, place=str(scene.path or "scene"))])
@@ -135,6 +140,8 @@ def plan_of(
     question = Question(bare, duration is None, duration, tolerance, function=function)
     changed(bare, space.changes(np.full(len(space.draws), 0.5)))  # refuses now what no sample could be
     nominal: Row = {"verdict": None, "message": ""}
+    if resumed is not None:  # refused before anything takes time
+        same_study(resumed, Plan(scene, space, question, limits, left, seed, importance, nominal).header())
     if duration is None:
         cycle = steady(bare, tolerance=tolerance)
         other = steady(changed(bare, space.changes(np.full(len(space.draws), 0.6))), tolerance=tolerance)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
+import itertools
 import json
 import logging
 import os
@@ -414,6 +415,12 @@ class Journal:
                 self.rows[int(record.pop("point"))] = record
             whole += size
         return whole
+
+
+def same_study(folder: Path, study: Study) -> None:
+    """ValueError where a journal in the folder is of another study than this, with the difference."""
+    for record, _ in itertools.islice(_records(folder / NAME) if (folder / NAME).is_file() else (), 1):
+        _compare(record, plain(study), folder)
 
 
 def read_rows(path: Path) -> tuple[Study, dict[int, Row]]:
