@@ -289,6 +289,13 @@ PLOTS = (
         "",
     ),
     Exhibit(
+        "wear.png",
+        "Wear",
+        "Archard's index, load times sliding distance, for each millimetre of the true outline and extrapolated to a year, of the places that wear most; of all teeth the one that does. A corner has no length: it is a ring, with its sum below. The sums are those of `ws.wear(run)`; the page of a run shows the picture of its last beats.",
+        "watchsim plot swiss --kind wear -o wear.png",
+        "",
+    ),
+    Exhibit(
         "portrait.png",
         "Phase portrait",
         "Velocity over angle of one oscillation, phases in colour.",
@@ -328,7 +335,7 @@ HEAD = f"""# Plots
 
 `watchsim plot RUN --kind NAME` draws what is shown here, several kinds with commas, `--kind all` every one that the run has. Files are PNG,
 SVG or PDF (`--format svg,pdf`, or the ending of `-o`). In Python each is a function that returns a matplotlib figure:
-`ws.plot_kinematics`, `plot_phases`, `plot_timeline`, `plot_torque`, `plot_forces`, `plot_phase_portrait`, `plot_energy`, `plot_sound`, `plot_timing`, `plot_tape`; of studies
+`ws.plot_kinematics`, `plot_phases`, `plot_timeline`, `plot_torque`, `plot_forces`, `plot_phase_portrait`, `plot_energy`, `plot_sound`, `plot_timing`, `plot_tape`, `plot_wear`; of studies
 `plot_sweep` and `plot_sensitivity` ([studies](studies.md)). A notebook shows a figure that stands on the last line of a cell.
 
 A figure is as wide as it will be printed: 170 mm for a page, `--width "85 mm"` (`width=85`) for a column, letters of 6 pt or more in both. Colours can

@@ -90,7 +90,7 @@ PAGES = {
             *("plot_kinematics", "plot_phases", "plot_timeline", "plot_torque", "plot_phase_portrait", "plot_forces"),
             "plot_sound",
             *("plot_energy", "plot_timing", "plot_tape", "plot_sweep", "plot_comparison", "plot_sensitivity", "plot_tolerance"),
-            *("plot_front", "plot_fit", "plot_positions", "plot_shock_map"),
+            *("plot_front", "plot_fit", "plot_positions", "plot_shock_map", "plot_wear"),
             *("movie", "frame", "card", "show", "sound", "report", "listen", "watchsim.analysis.listen:Heard"),
         ],
     ),

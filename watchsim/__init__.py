@@ -60,6 +60,7 @@ _HOMES = {
     "plot_sound": "watchsim.render.sound_plot",
     "plot_positions": "watchsim.render.positions_plot",
     "plot_shock_map": "watchsim.render.shock_plot",
+    "plot_wear": "watchsim.render.wear_plot",
     "plot_fit": "watchsim.render.study_plot",
     "plot_front": "watchsim.render.study_plot",
     "plot_sensitivity": "watchsim.render.study_plot",
@@ -115,6 +116,7 @@ if TYPE_CHECKING:
     from watchsim.render.timing_plot import plot_tape as plot_tape
     from watchsim.render.timing_plot import plot_timing as plot_timing
     from watchsim.render.tolerance_plot import plot_tolerance as plot_tolerance
+    from watchsim.render.wear_plot import plot_wear as plot_wear
     from watchsim.results.folder import read_results as read_results
     from watchsim.results.folder import write_results as write_results
     from watchsim.scene.errors import SceneError as SceneError

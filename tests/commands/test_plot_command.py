@@ -61,6 +61,7 @@ def test_all_leaves_out_what_a_run_does_not_have(disc: Path, tmp_path: Path, cap
         "kinematics.png",
         "phase-portrait.png",
         "sound.png",
+        "wear.png",
     ]
     assert "No plot of torque: nothing in this scene swings" in capsys.readouterr().err
 

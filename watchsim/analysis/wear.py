@@ -61,6 +61,7 @@ class Wear:
     friction     work of friction of all contacts while they slid, J; `percussions`: within impacts
     places       sorted by body and name
     along        primitive of the model -> index of each of CELLS equal parts of it, N·m
+    where        the same -> its body, and what the place is called
     """
 
     seconds: float
@@ -68,6 +69,7 @@ class Wear:
     percussions: float
     places: tuple[WornPlace, ...]
     along: dict[int, Array] = field(repr=False)
+    where: dict[int, tuple[str, str]] = field(repr=False)
 
     @property
     def typical(self) -> tuple[WornPlace, ...]:
@@ -101,6 +103,7 @@ class _Rubbed:
     t: Array
     point: Array
     amounts: Array
+    slid: bool  # steps, NODES of each, and not percussions
 
 
 def wear(run: Trajectory, window: Sequence[float] | None = None) -> Wear:
@@ -120,6 +123,7 @@ def wear(run: Trajectory, window: Sequence[float] | None = None) -> Wear:
     compiled = compile_scene(run.scene)
     found = [*_sliding(run, whole), *_percussions(run, compiled, whole)]
     along: dict[int, Array] = {}
+    where: dict[int, tuple[str, str]] = {}
     sums: dict[tuple[str, str], Array] = {}
     named = _Names(run, compiled)
     for one in found:
@@ -127,9 +131,10 @@ def wear(run: Trajectory, window: Sequence[float] | None = None) -> Wear:
         for side, other in ((int(contact.a), int(contact.b)), (int(contact.b), int(contact.a))):
             local = _local(run, compiled, side, one)
             key = compiled.owners[side], named.of(side, other, float(one.t[0]), local[0])
+            where.setdefault(side, key)
             sums[key] = sums.get(key, 0.0) + one.amounts.sum(axis=0)
-            cells, share = along.setdefault(side, np.zeros(CELLS)), _share(compiled, side, local)
-            np.add.at(cells, np.clip(CELLS * share, 0, CELLS - 1).astype(int), one.amounts[:, 3])
+            ends = np.sort(_stretches(_share(compiled, side, local), one.slid), axis=1)
+            along[side] = along.get(side, np.zeros(CELLS)) + _spread(ends, one.amounts[:, 3])
     total = sum((one.amounts.sum(axis=0) for one in found), np.zeros(4))
     order = {body.name: k for k, body in enumerate(run.scene.bodies)}
     keys = sorted(sums, key=lambda key: (order[key[0]], len(key[1]), key[1]))
@@ -140,6 +145,7 @@ def wear(run: Trajectory, window: Sequence[float] | None = None) -> Wear:
         float(total[2]),
         places,
         {k: v for k, v in along.items() if v.any()},
+        {k: where[k] for k, v in along.items() if v.any()},
     )
 
 
@@ -156,7 +162,7 @@ def _sliding(run: Trajectory, steps: Array) -> Iterator[_Rubbed]:
             own = np.isfinite(found.point[:, j, 0])
             way, ones = weights[own] * np.abs(slip[own, j]), weights[own] * slip[own, j]
             amounts = (way, -found.tangential[own, j] * ones, np.zeros(len(way)), found.normal[own, j] * way)
-            yield _Rubbed(contact, times[own], found.point[own, j], np.column_stack(amounts))
+            yield _Rubbed(contact, times[own], found.point[own, j], np.column_stack(amounts), True)
 
 
 def _percussions(run: Trajectory, compiled: Compiled, steps: Array) -> Iterator[_Rubbed]:
@@ -174,7 +180,7 @@ def _percussions(run: Trajectory, compiled: Compiled, steps: Array) -> Iterator[
         work = -own["impulse_tangential"] * slip.mean(axis=0)
         nothing = np.zeros(len(t))
         amounts = (nothing, nothing, work, own["impulse_normal"] * np.abs(slip).mean(axis=0))
-        yield _Rubbed(contact, t, seen.point[:, 0].copy(), np.column_stack(amounts))
+        yield _Rubbed(contact, t, seen.point[:, 0].copy(), np.column_stack(amounts), False)
 
 
 def _local(run: Trajectory, compiled: Compiled, side: int, one: _Rubbed) -> Array:
@@ -198,6 +204,30 @@ def _share(compiled: Compiled, side: int, local: Array) -> Array:
         return np.asarray((x * p.tx + y * p.ty) / p.length)
     turn = np.arctan2(y, x) - np.arctan2(p.py - p.y, p.px - p.x)
     return np.asarray(0.5 + 0.5 * ((turn + np.pi) % (2.0 * np.pi) - np.pi) / _half(p))
+
+
+# The points at the nodes of Gauss's rule stand for the stretches between the times at which their weights meet, where the
+# polynomial through them says.
+_MEET = np.concatenate(([0.0], np.cumsum(WEIGHTS)))
+_THROUGH = np.linalg.solve(np.vander(NODES).T, np.vander(_MEET, len(NODES)).T)
+
+
+def _stretches(share: Array, slid: bool) -> Array:
+    """From where to where along a primitive each instant counts, (n, 2); a percussion has no length."""
+    if not slid:
+        return np.column_stack((share, share))
+    edges = share.reshape(-1, len(NODES)) @ _THROUGH
+    edges[np.ptp(edges, axis=1) > 0.5] = np.nan  # round a full circle from its end to its start
+    ends = np.column_stack((edges[:, :-1].ravel(), edges[:, 1:].ravel()))
+    return np.where(np.isnan(ends), share[:, None], ends)
+
+
+def _spread(ends: Array, amounts: Array) -> Array:
+    """The amounts, each evenly over its stretch (n, 2), by cell."""
+    limits = np.linspace(0.0, 1.0, CELLS + 1)
+    limits[[0, -1]] = -np.inf, np.inf
+    low, width = ends[:, :1], np.maximum(ends[:, 1:] - ends[:, :1], np.finfo(float).eps)
+    return np.asarray(amounts @ np.diff(np.clip((limits - low) / width, 0.0, 1.0), axis=1))
 
 
 def _half(arc: np.record) -> float:

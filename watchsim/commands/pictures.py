@@ -62,6 +62,7 @@ KINDS = {  # kind -> what `watchsim.plot_KIND` takes besides the run
     "sound": ("window", "width"),
     "timing": ("window", "width"),
     "tape": ("window", "width"),
+    "wear": ("window", "width"),
 }
 
 

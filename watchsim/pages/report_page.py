@@ -13,10 +13,10 @@ from typing import Any
 from watchsim.analysis.phases import phases_within
 from watchsim.analysis.summary import summary
 from watchsim.pages.charts import poster
-from watchsim.pages.html import Markup, element, joined, packed_files, page
+from watchsim.pages.html import Markup, element, image, joined, packed_files, page, section
 from watchsim.pages.player import Channel, TooMuch, channels, drawn_parts, picture_size, player_data, shown
 from watchsim.pages.timing_sheet import sheet, verdict
-from watchsim.render.opening import telling
+from watchsim.render.opening import last_beats, telling
 from watchsim.render.view import Window, recorded
 from watchsim.results.tables import plain
 from watchsim.simulation.trajectory import Trajectory
@@ -24,6 +24,7 @@ from watchsim.storage.write import write_file
 
 ENDINGS = (".html", ".htm")
 HALVINGS = 12
+WORN_DOTS = 800  # across the picture of wear: 19 kB
 ALONE = Markup("<style>.skip,header,#sheet,footer{display:none!important}main{margin-top:0;padding-top:0}</style>")
 
 
@@ -84,7 +85,7 @@ def page_parts(
         "poster": poster(run, span, parts, opening),
         "verdict": (verdict(numbers) if numbers else None) or Markup(""),
         "lead": _lead(run, span),
-        "sheet": sheet(run, numbers) if numbers else Markup(""),
+        "sheet": joined((sheet(run, numbers), _worn(run))) if numbers else Markup(""),
         "saved": Markup(""),
         "made": _made(numbers or {}, off),
     }
@@ -103,6 +104,19 @@ def _motion(run: Trajectory, window: Sequence[float] | None) -> tuple[Window, li
                 raise
             span = (0.5 * (span[0] + span[1]), span[1])
     return span, *channels(run, span, size)
+
+
+def _worn(run: Trajectory) -> Markup:
+    """What wore in the last beats, along the outlines; nothing where nothing slides, or the run does not know."""
+    from watchsim.render.style import small_png  # with matplotlib, which takes half a second to load
+    from watchsim.render.wear_plot import plot_wear
+
+    try:
+        figure = plot_wear(run, last_beats(run))
+    except ValueError:
+        return Markup("")
+    words = "Archard's index of the last beats as colour along the outlines that slide on each other"
+    return section("wear", "What wears", image(small_png(figure, WORN_DOTS), words, WORN_DOTS))
 
 
 def _lead(run: Trajectory, span: Window) -> str:

@@ -1,0 +1,121 @@
+"""Where does an outline wear? Archard's N s as colour along it, of the places that wear most."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.collections import LineCollection
+from matplotlib.colors import LogNorm
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from watchsim.analysis.wear import CELLS, TOOTH, Wear, cell_ends, wear
+from watchsim.mechanism.compile import Compiled, compile_scene
+from watchsim.model import CORNER
+from watchsim.render import style
+from watchsim.render.palette import FAINT, INK
+from watchsim.simulation.trajectory import Trajectory
+
+Array = NDArray[np.float64]
+ACROSS, MOST = 3, 6  # panels
+STONE = " stone"  # its faces share a panel
+TALL, FOOT = 54.0, 22.0  # mm, of a row of panels, and of title, names and scale
+DECADES = 1e3  # below the most: less counts as least
+THICK, POINTS = 3.2, 26.0  # pt, and pt² of a corner
+ROOM = 0.25  # of what wears, around it
+LEAST_SIDE = 1e-5  # m, of a panel
+MM = 1e3
+
+
+def plot_wear(run: Trajectory, window: Sequence[float] | None = None, width: float = style.FULL) -> Figure:
+    """Of the places that wear most (of all teeth the one that does) the true outline, with load times sliding distance in a
+    year for each millimetre of it as colour; a corner, which has no length, as a ring, with its sum in words.
+
+    ValueError where nothing slides, and as `wear` has it. `width` in mm.
+    """
+    found, compiled = wear(run, window), compile_scene(run.scene)
+    groups = _groups(found)
+    if not groups:
+        raise ValueError("nothing slides there under a load, so nothing wears")
+    cells = {side: _along(found, compiled, side) for sides in groups.values() for side in sides}
+    most = max((float(own.max()) for own in cells.values() if len(own)), default=0.0) or 1.0
+    norm, rows = LogNorm(most / DECADES, most), -(-len(groups) // ACROSS)
+    made = style.figure(width, TALL * rows + FOOT, layout="constrained")
+    made.suptitle(style.cut(f"{run.scene.title}: wear"), x=0.01, ha="left", fontsize=style.TITLE, weight="bold", color=INK)
+    panels = made.subplots(rows, min(ACROSS, len(groups)), squeeze=False)
+    for axes, (name, sides) in zip(panels.flat, groups.items(), strict=False):
+        _panel(axes, name, sides, (found, compiled, cells), norm)
+    for axes in list(panels.flat)[len(groups) :]:
+        axes.set_visible(False)
+    scale = LineCollection([], cmap=style.MAP, norm=norm)
+    bar = made.colorbar(scale, ax=panels, location="bottom", shrink=0.6, aspect=50, pad=0.02)
+    bar.ax.tick_params(labelsize=style.TICK, colors=INK)
+    bar.set_label("load × sliding distance in a year, N·m for each mm of outline", fontsize=style.LABEL, color=INK)
+    return made
+
+
+def _groups(found: Wear) -> dict[str, list[int]]:
+    """Name of a panel -> primitives: a stone with all its faces, one tooth of all; those that wear most."""
+    sums: dict[tuple[str, str], list[int]] = {}
+    for side, (body, place) in found.where.items():
+        sums.setdefault((body, place.partition(STONE)[0] + STONE if STONE in place else place), []).append(side)
+    index = {key: sum(float(found.along[side].sum()) for side in sides) for key, sides in sums.items()}
+    teeth = [key for key in index if key[1].startswith(TOOTH)]
+    left_out = set(teeth) - {max(teeth, key=index.__getitem__)} if teeth else set()
+    ranked = sorted((key for key in index if key not in left_out), key=lambda key: -index[key])
+    return {f"{body}, {place}": sums[body, place] for body, place in ranked[:MOST]}
+
+
+def _along(found: Wear, compiled: Compiled, side: int) -> Array:
+    """N·m in a year for each mm, of each part of an edge; nothing of a corner."""
+    if compiled.model.primitives.kind[side] == CORNER:
+        return np.zeros(0)
+    ends = cell_ends(compiled, side)
+    lengths = MM * np.hypot(*np.diff(ends, axis=0).T)
+    return np.asarray(found.in_a_year(1.0) * found.along[side] / lengths)
+
+
+def _panel(axes: Any, name: str, sides: list[int], what: tuple[Wear, Compiled, dict[int, Array]], norm: LogNorm) -> None:
+    found, compiled, cells = what
+    worn = np.concatenate([_worn_ends(found, compiled, side) for side in sides])
+    middle = 0.5 * MM * (worn.min(axis=0) + worn.max(axis=0))
+    half = (0.5 + ROOM) * MM * max(float(np.ptp(worn, axis=0).max()), LEAST_SIDE)
+    primitives = compiled.model.primitives
+    for other in np.flatnonzero(primitives.body == primitives.body[sides[0]]):
+        axes.plot(*(MM * cell_ends(compiled, int(other))).T, color=FAINT, linewidth=style.THIN, zorder=1)
+    for side in sides:
+        points = MM * cell_ends(compiled, side)
+        if len(cells[side]):
+            pieces = np.stack((points[:-1], points[1:]), axis=1)[cells[side] > 0.0]
+            shown = cells[side][cells[side] > 0.0]
+            axes.add_collection(
+                LineCollection(list(pieces), array=shown, cmap=style.MAP, norm=norm, linewidths=THICK, zorder=2)
+            )
+    corners = [side for side in sides if not len(cells[side])]
+    for side in corners:
+        axes.scatter(
+            *(MM * cell_ends(compiled, side)).T, s=POINTS, facecolor="none", edgecolor=INK, linewidth=style.THIN, zorder=3
+        )
+    axes.set_aspect("equal")
+    axes.set_xlim(middle[0] - half, middle[0] + half)
+    axes.set_ylim(middle[1] - half, middle[1] + half)
+    axes.set_title(name, fontsize=style.LABEL, color=INK)
+    whole = found.in_a_year(sum(float(found.along[side].sum()) for side in sides))
+    words = f"{whole:.3g} N·m a year"
+    if corners:
+        words += f", {found.in_a_year(sum(float(found.along[side].sum()) for side in corners)):.3g} at corners"
+    axes.set_xlabel(f"{words}; mm", fontsize=style.SMALL, color=INK)
+    style.ticks(axes.xaxis, 3)
+    style.ticks(axes.yaxis, 3)
+    axes.tick_params(labelsize=style.TICK, colors=INK)
+
+
+def _worn_ends(found: Wear, compiled: Compiled, side: int) -> Array:
+    """The ends of what wears of a primitive, m."""
+    ends = cell_ends(compiled, side)
+    if len(ends) == 1:
+        return ends
+    worn = np.flatnonzero(found.along[side] > 0.0)
+    return ends[np.unique(np.concatenate((worn, np.minimum(worn + 1, CELLS))))]
