@@ -12,6 +12,7 @@ import pytest
 from made_scenes import drawing, square
 
 import watchsim as ws
+from watchsim.cli import main
 from watchsim.drawing.read import read as read_drawing
 from watchsim.scene.errors import Faults, SceneError
 from watchsim.scene.forces import Contact, Damping, LineSpring, Side, Spring, Torque
@@ -458,3 +459,19 @@ def test_a_scene_keeps_the_drawings_that_it_was_read_with(tmp_path, monkeypatch)
     assert pickle.loads(pickle.dumps(scene)).set("bodies.lever.position.1", "2.8 mm") == expected
     with pytest.raises(SceneError, match="there is no such file"):
         scene.set("bodies.lever.drawing", "other.dxf")
+
+
+def test_a_recorded_shock_travels_with_results(tmp_path, monkeypatch):
+    for one in (ws.profiles_dir() / "bench_lever").iterdir():
+        (tmp_path / one.name).write_bytes(one.read_bytes())
+    recorded = tmp_path / "blow.csv"
+    recorded.write_text("t_s,ax_m_s2,ay_m_s2\n0,0,0\n0.001,100,0\n0.002,0,0\n", encoding="utf-8")
+    with (tmp_path / "scene.toml").open("a", encoding="utf-8") as file:
+        file.write('\n[[shocks]]\nfile = "blow.csv"\nat = "5 ms"\n')
+    scene = ws.load(tmp_path)
+    assert main(["run", str(tmp_path), "--duration", "20 ms", "--no-plots", "-o", str(tmp_path / "results")]) == 0
+    expected = scene.set("torques.0.value", "-5 µN·m").shocks
+    recorded.unlink()
+    assert scene.set("torques.0.value", "-5 µN·m").shocks == expected and len(expected[0].rows) == 3
+    (tmp_path / "results").rename(tmp_path / "mailed")
+    assert ws.load(tmp_path / "mailed" / "scene.lock.toml").shocks == expected

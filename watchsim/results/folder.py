@@ -14,7 +14,7 @@ import json
 import os
 import platform
 import re
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from importlib import metadata
 from pathlib import Path, PurePath
@@ -59,13 +59,19 @@ def lock_text(scene: Scene, folder: Path | None = None, kept: Mapping[str, str] 
         if (drawing := source["bodies"][name].get("drawing")) in (kept or {}):  # named by where it will be
             entry["drawing"] = (kept or {})[drawing]
     ordered.update((key, value) for key, value in source.items() if key not in ordered)
+    shocks: list[dict[str, Any]] = source.get("shocks", [])
+    for shock in shocks:
+        if shock.get("file") in (kept or {}):
+            shock["file"] = (kept or {})[shock["file"]]
     _complete_forces(ordered, scene)
     ordered["run"] = {"duration": _si(scene.duration, "s"), "tolerance": scene.tolerance, **source.get("run", {})}
     ordered["lock"] = {
         "versions": versions(),
         **({DESIGN: scene.source[DESIGN]} if DESIGN in scene.source and not made else {}),
         "drawings": _digests(
-            ordered["bodies"], folder or Path(), {there: scene.drawings[name] for name, there in (kept or {}).items()}
+            [*ordered["bodies"].values(), *shocks],
+            folder or Path(),
+            {there: scene.drawings[name] for name, there in (kept or {}).items()},
         ),
     }
     return HEADER + toml_text(ordered)
@@ -125,8 +131,8 @@ def _drawing_path(path: Path, folder: Path | None) -> str:
     return Path(os.path.relpath(path, folder) if folder else path.resolve()).as_posix()
 
 
-def _digests(bodies: dict[str, Any], folder: Path, known: Mapping[str, bytes]) -> dict[str, str]:
-    names = dict.fromkeys(entry["drawing"] for entry in bodies.values() if "drawing" in entry)
+def _digests(entries: Iterable[Mapping[str, Any]], folder: Path, known: Mapping[str, bytes]) -> dict[str, str]:
+    names = dict.fromkeys(entry[key] for entry in entries for key in ("drawing", "file") if key in entry)
     # The folder may not exist yet: `..` after it cannot be followed, only resolved in words.
     return {
         name: digest(known[name]) if name in known else file_digest(Path(os.path.normpath(folder / name))) for name in names

@@ -12,6 +12,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from watchsim.drawing.write import Files
 from watchsim.paths import profiles_dir
 from watchsim.scene.assign import assign
 from watchsim.scene.designed import with_design
@@ -74,7 +75,7 @@ def from_mapping(
     bearings = read_bearings(mapping, bodies, faults)
     contacts = read_contacts(mapping, bodies, sound, heading.tangential_law, faults)
     line_springs = read_line_springs(mapping, bodies, faults)
-    shocks = read_shocks(mapping, folder, faults)
+    shocks, recordings = read_shocks(mapping, folder, faults, drawings)
     note_carriers(bodies, damping, contacts, faults)
     duration, record, tolerance = read_run(mapping, faults)
     lift_angle, nominal = read_timegrapher(mapping, faults)
@@ -105,7 +106,7 @@ def from_mapping(
         path=path,
         source=mapping,
         findings=read.findings,
-        drawings=read.drawings,
+        drawings=Files({**read.drawings, **recordings}),
         written=written,
         reader=changed,
     )
@@ -121,7 +122,7 @@ def from_mapping(
 def changed(scene: Scene, changes: Mapping[str, object], faults: Faults | None = None) -> Scene:
     """The scene with those dotted keys changed and everything checked again; SceneError lists what does not fit.
 
-    Its drawings stay those that were read, whatever has become of the files since.
+    Its drawings and recordings stay those that were read, whatever has become of the files since.
     """
     name = str(scene.path) if scene.path else "scene"
     designed = scene.written.made if scene.written is not None else ()

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from watchsim.drawing.findings import Finding
-from watchsim.drawing.write import Files
+from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Point
 from watchsim.geometry.solids import mass_properties
@@ -213,7 +213,7 @@ class ReadBodies:
     bodies: tuple[Body, ...] = ()
     findings: tuple[Finding, ...] = ()
     sound: frozenset[str] = frozenset()
-    drawings: Mapping[str, bytes] = field(default_factory=dict)
+    drawings: Mapping[str, bytes | Sheet] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -251,7 +251,7 @@ def read_bodies(mapping: object, folder: Path, faults: Faults, made: Made | None
     findings = [finding for one in read for finding in (*one.outlines.findings, *one.inertias.findings)]
     sound = {one.name for one in read if one.outlines.sound}
     drawings = {one.table.text("drawing"): one.outlines.data for one in read if one.outlines.data is not None}
-    return ReadBodies(tuple(bodies), tuple(dict.fromkeys(findings)), frozenset(sound), Files(drawings))
+    return ReadBodies(tuple(bodies), tuple(dict.fromkeys(findings)), frozenset(sound), drawings)
 
 
 def _with_motion(name: str, entry: dict[str, Any], faults: Faults) -> dict[str, Any]:

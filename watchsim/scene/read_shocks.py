@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import math
 from collections.abc import Mapping
 from pathlib import Path
@@ -18,25 +19,31 @@ COLUMNS = ("t_s", "ax_m_s2", "ay_m_s2", "turn_rad_s2")
 Rows = tuple[tuple[float, float, float, float], ...]
 
 
-def read_shocks(mapping: Mapping[str, Any], folder: Path, faults: Faults) -> tuple[Shock, ...]:
-    """Half sines and recordings; what turns the case turns it about one point."""
+def read_shocks(
+    mapping: Mapping[str, Any], folder: Path, faults: Faults, known: Mapping[str, bytes] | None = None
+) -> tuple[tuple[Shock, ...], dict[str, bytes]]:
+    """Half sines and recordings; what turns the case turns it about one point. The files of recordings by name, too.
+
+    Those in `known` are not looked for in the folder.
+    """
+    files: dict[str, bytes] = {}
     elements = listed(mapping, "shocks", faults)
     tables = [Table(one, f"shocks.{i}", SHOCK, faults) for i, one in enumerate(elements)]
-    found = tuple(_shock(table, folder) for table in tables)
+    found = tuple(_shock(table, folder, known or {}, files) for table in tables)
     if any(one.turns for one in found):
         for table, one in zip(tables, found, strict=True):
             if one.about != found[0].about:
                 table.fault("about", "all shocks of a case that turns are said of one point: write the same in each")
-    return found
+    return found, files
 
 
-def _shock(table: Table, folder: Path) -> Shock:
+def _shock(table: Table, folder: Path, known: Mapping[str, bytes], files: dict[str, bytes]) -> Shock:
     at, about = table.quantity("at", 0.0), table.pair("about")
     if "file" in table:
         for key in ("acceleration", "direction", "duration", "turn"):
             if key in table:
                 table.fault(key, "belongs to a half sine, and the file says all of it: leave one out")
-        rows = _recording(table, folder)
+        rows = _recording(table, folder, known, files)
         return Shock(at, rows[-1][0] if rows else NAN, about=about, rows=rows)
     table.lacks('acceleration = "30400 m/s²", direction = "0°", duration = "0.35 ms"', "duration")
     if "acceleration" not in table and "turn" not in table and table.is_table:
@@ -47,12 +54,14 @@ def _shock(table: Table, folder: Path) -> Shock:
     )
 
 
-def _recording(table: Table, folder: Path) -> Rows:
-    """The rows of a CSV file; none after a fault."""
-    path = folder / table.text("file")
+def _recording(table: Table, folder: Path, known: Mapping[str, bytes], files: dict[str, bytes]) -> Rows:
+    """The rows of a CSV file, which is added to `files`; none after a fault."""
+    name = table.text("file")
+    path = folder / name
     try:
-        with path.open(newline="", encoding="utf-8-sig") as file:
-            lines = [line for line in csv.reader(file) if line]
+        data = known[name] if name in known else path.read_bytes()
+        lines = [line for line in csv.reader(io.StringIO(data.decode("utf-8-sig"), newline="")) if line]
+        files[name] = data
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         table.fault("file", f"{path} cannot be read: {getattr(error, 'strerror', None) or error}", with_value=True)
         return ()

@@ -103,6 +103,8 @@ def write_scene(scene: Scene, changes: Mapping[str, str | float], folder: Path) 
     elsewhere = {
         f"bodies.{body}.drawing": moved[entry["drawing"]] for body, entry in bodies.items() if entry.get("drawing") in moved
     }
+    shocks = enumerate(scene.source.get("shocks", ()))
+    elsewhere |= {f"shocks.{i}.file": moved[one["file"]] for i, one in shocks if one.get("file") in moved}
     (folder / "scene.toml").write_text(rewritten(scene, {**changes, **elsewhere}), encoding="utf-8")
     for name in names:
         place = folder / moved.get(name, name)

@@ -196,6 +196,8 @@ def keep_scene(scene: Scene, folder: Path) -> None:
     for entry in mapping.get("bodies", {}).values():
         if entry.get("drawing") in kept:
             entry["drawing"] = kept[entry["drawing"]]
+    for shock in mapping.get("shocks", ()):
+        shock.update({key: kept.get(name, name) for key, name in shock.items() if key == "file"})
     here = scene.path.parent if scene.path else Path()
     for i, entry in enumerate(one for one in mapping["tolerances"].values() if "file" in one):
         there = f"measured_{i}_{PurePath(entry['file']).name}"
