@@ -57,7 +57,8 @@ def test_files_that_are_not_there_or_not_read(tmp_path: Path) -> None:
     (tmp_path / "folder.dxf").mkdir()
     assert "is a folder" in errors(read(tmp_path / "folder.dxf"))["unreadable"]
     assert "no such file" in errors(read(tmp_path / "wheel.svg"))["unreadable"]
-    assert "wheel.step" in errors(read(tmp_path / "wheel.step"))["format"]
+    assert "no such file" in errors(read(tmp_path / "wheel.step"))["unreadable"]
+    assert "wheel.sldprt" in errors(read(tmp_path / "wheel.sldprt"))["format"]
     with pytest.raises(ValueError, match="positive"):
         read(tmp_path / "none.dxf", snap=0.0)
 

@@ -22,7 +22,7 @@ from watchsim.geometry.loops import Loop
 from watchsim.geometry.solids import region
 from watchsim.scene.layer_heights import slabs
 
-PROFILES = Path(ws.__file__).resolve().parents[1] / "profiles"
+PROFILES = ws.profiles_dir()
 SCENES = sorted(path.parent.name for path in PROFILES.glob("*/scene.toml"))
 CHORD = 0.2e-6  # m, of the export
 MICROMETRE, FINE = 1e6, 1e-9

@@ -150,7 +150,7 @@ def test_readings_of_a_timing_machine(tmp_path):
 @pytest.mark.slow
 def test_readings_in_positions_and_hours_after_winding(tmp_path):
     """Where the balance's centre of mass lies, and what its train leaves of the force, from readings like a certificate's."""
-    scene = ws.load(Path(ws.__file__).parents[1] / "docs" / "guide" / "positions" / "swiss_lever.toml")
+    scene = ws.load(Path(__file__).parents[2] / "docs" / "guide" / "positions" / "swiss_lever.toml")
     centre = "bodies.balance.centre_of_mass"
     truth = {f"{centre}.0": 0.9e-6, f"{centre}.1": 0.3e-6, "torques.0.efficiency": 0.72}
     true = scene

@@ -140,12 +140,15 @@ def handle_event(model, cells, state, options, scratch, record):
 
 @kernel
 def mark_disturbed(model, state, m, event):
-    """Mark in `event.disturbed` the islands to decide anew: that of the contact that ended the step, those of new contacts.
+    """Mark in `event.disturbed` the islands to decide anew: of the awake, of the contact that ended the step, of new contacts.
 
-    What an island has decided holds until it ends there or something touches it. The m closed contacts are in `event.listed`.
+    What sleeping bodies have decided holds until something touches them. The m closed contacts are in `event.listed`.
     """
     struck, label = state.instant.struck - 1, event.label
     event.disturbed[:] = 1 if struck < 0 else 0
+    for i in range(len(label)):
+        if state.regime.awake[i] != 0:
+            event.disturbed[label[i]] = 1
     for j in range(m):
         k = event.listed[j]
         if k == struck or state.regime.mode[k] == OPEN:
