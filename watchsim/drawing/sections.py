@@ -21,12 +21,17 @@ ALIKE = 1e-8  # m: thicknesses this close are the same, and the lowest slab is p
 SHOWN = 12  # heights in a message
 
 
+SHORT = "the file holds no triangle, or was cut short"
+
+
 def read_solid(data: bytes, ending: str, units: str | None, fit: float, section: float | None) -> Content:
     """What a cut at the height `section` (m) shows; without one, that of a plate, which is the same at all heights.
 
     ValueError where `units` is not a unit of length.
     """
     stated = named_length(units) if units is not None else None
+    if ending == "stl" and _is_short(data):
+        return _nothing("empty", SHORT, "Export the solid again.")
     try:
         solids, own = solids_of(data, ending, fit)
     except ImportError as error:
@@ -37,7 +42,7 @@ def read_solid(data: bytes, ending: str, units: str | None, fit: float, section:
         return _nothing("damaged", f"it cannot be read as {ending.upper()}: {reason}", "Export the solid again.")
     solids = [solid for solid in solids if len(solid.faces)]
     if not solids:
-        return _nothing("empty", "the file holds no triangle, or was cut short", "Export the solid again.")
+        return _nothing("empty", SHORT, "Export the solid again.")
     known = dict(UNITS)
     name, metres = stated or (own, known.get(own or "", 1e-3))
     findings = [_open_mesh(solid.name, solid.open_edges) for solid in solids if solid.open_edges]
@@ -72,6 +77,11 @@ def read_solid(data: bytes, ending: str, units: str | None, fit: float, section:
         slabs=heights,
         findings=(*faults, *findings),
     )
+
+
+def _is_short(data: bytes) -> bool:
+    """Is this neither text nor a whole binary STL: 80 bytes, the number of triangles, and 50 bytes for each?"""
+    return data.lstrip()[:5].lower() != b"solid" and len(data) < 84 + 50 * int.from_bytes(data[80:84], "little")
 
 
 def _nothing(code: str, message: str, fix: str) -> Content:
