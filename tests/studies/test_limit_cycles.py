@@ -16,6 +16,7 @@ from scipy.optimize import brentq
 
 import watchsim as ws
 from watchsim.analysis.timing import mean_over
+from watchsim.bench.growth import side_by_side
 from watchsim.commands.steady import text
 from watchsim.scene.scene import Scene
 from watchsim.simulation.recording import unevenness
@@ -183,6 +184,7 @@ def test_a_balance_alone(bench):
         ("jumper", "springs", "jumper is sprung, finger moves as the scene says, and no torque acts"),
         ("cam", "springs", "follower is sprung"),
         ("ratchet", "torques", "wheel is driven, click is sprung and rests on it, and did not swing"),
+        ("winding_click", "torques", "wheel is driven, click is sprung"),  # its spring has a stop
     ],
 )
 def test_what_is_no_watch_has_no_cycle_to_ask_for(name, key, seen):
@@ -200,6 +202,21 @@ def test_on_a_carriage():
     assert cycle.found
     assert "run of 20 s" in cycle.message
     assert abs(cycle.amplitude_deg - 290.73) < 0.05
+
+
+def test_what_has_no_section_is_followed_until_it_settles():
+    """The hooks of a grasshopper never rest; a run of 60 s, which the scene gives, is too short."""
+    scene = ws.load(ws.profiles_dir() / "grasshopper")
+    cycle = steady(scene)
+    assert cycle.found
+    assert abs(cycle.amplitude_deg - end_of_run(scene, 1500.0, 240)) <= cycle.amplitude_deg_error < 1e-4
+
+
+def test_a_watch_beside_another_has_the_cycle_that_it_has_alone(bench):
+    """The two cannot influence each other, and never stand still at one instant."""
+    alone, both = steady(bench), steady(side_by_side(bench, 2))
+    assert both.found
+    assert both.amplitude_deg == pytest.approx(alone.amplitude_deg, abs=1e-6)
 
 
 def test_a_shifted_pivot_takes_the_start_back(bench):

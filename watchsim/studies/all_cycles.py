@@ -69,9 +69,28 @@ def judged(run: Trajectory, since_start: bool = False) -> Judgement:
 
 
 def late_means(run: Trajectory) -> Averages:
-    """Means over the last third of a run, with their scatter."""
-    found = beats(run)
-    return averages(found, (2.0 * run.simulated / 3.0, run.simulated))
+    """Means over the last third of a run, with their scatter, and what is still to come where it settles slowly."""
+    found, end = beats(run), run.simulated
+    late = averages(found, (2.0 * end / 3.0, end))
+    parts = [averages(found, (share * end, (share + 1.0 / 6.0) * end)) for share in (0.5, 2.0 / 3.0, 5.0 / 6.0)]
+
+    def error(name: str) -> float | None:
+        known, values = getattr(late, f"{name}_error"), [getattr(part, name) for part in parts]
+        return None if known is None or None in values else max(known, _to_come(*values))
+
+    return dataclasses.replace(
+        late,
+        amplitude_deg_error=error("amplitude_deg"),
+        period_s_error=error("period_s"),
+        rate_s_per_d_error=error("rate_s_per_d"),
+    )
+
+
+def _to_come(a: float, b: float, c: float) -> float:
+    """How far the end of an exponential that has these means in three equal stretches lies from the mean of the last two."""
+    first, second = abs(b - a), abs(c - b)
+    ratio = second / first if first > 0.0 else 0.0
+    return 0.5 * second + (second * ratio / (1.0 - ratio) if ratio < 1.0 else second)
 
 
 # The return map P is looked at from small swings to large ones. Where P(A) - A, or P(P(A)) - A, changes its sign there is a

@@ -251,7 +251,7 @@ MOST_POLISH = 12  # turns
 MOST_TEETH = 400
 MOST_ROUNDS = 20  # turns of the wheel
 FINER, COARSER = 0.01, 10.0  # times the tolerance: to see what the tolerance does
-CAUTION = 2.0  # times what it does, and what else is known of the error
+CAUTION = 3.0  # times what it does, and what else is known of the error
 
 
 class Slope(NamedTuple):

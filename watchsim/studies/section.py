@@ -75,7 +75,8 @@ def parts_of(scene: Scene, compiled: Compiled) -> Parts | None:
     body, model = names.index(found.oscillator), compiled.model
     coordinate = compiled.slices[found.oscillator].start
     owner = model.primitives.body
-    blocks = np.array([one.motion == "fixed" or one.name == found.lever for one in scene.bodies])
+    blocks = np.zeros(len(model.bodies), bool)  # behind those of the scene stand racks of gears and of springs' stops
+    blocks[: len(names)] = [one.motion == "fixed" or one.name == found.lever for one in scene.bodies]
     touching = np.append((owner[model.contacts.a] == body) | (owner[model.contacts.b] == body), False)
     # A wheel geared to another body stands where that one's coordinate says.
     bound = bonds(scene.bodies, rides(scene.bodies))

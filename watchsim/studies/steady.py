@@ -19,7 +19,8 @@ from watchsim.scene.errors import Faults, SceneError
 from watchsim.scene.roles import is_driven, only_presses, roles
 from watchsim.scene.scene import Scene
 from watchsim.scene.toml import key_lines
-from watchsim.simulation.state import State
+from watchsim.simulation.state import State, Stop
+from watchsim.simulation.systems import systems_of
 from watchsim.studies.all_cycles import Survey, Swings, judged, late_means, run_from, with_all_cycles
 from watchsim.studies.attractor import Led, attractor, moved_on
 from watchsim.studies.cycle import Cycle
@@ -85,8 +86,9 @@ def _refused(scene: Scene, seen: str) -> SceneError:
 
 TURNS = 6  # of the wheel, until what stands still comes back to its place
 AFTERWARDS = 24  # periods of the run that shows what happens where there is no cycle
-LONGEST = 120.0  # s, of a run that stands in for a cycle
+LONGEST = 120.0  # s, of a run that stands in for a cycle, at first
 FEWEST = 40  # periods of it
+LONGER, MOST = 4.0, 2000  # times as long, and periods at most, where it has not settled by then
 SETTLED = 1e-4  # of the amplitude: what such a run may still scatter and drift
 LOSSLESS = 1e-9  # of the amplitude, in one oscillation
 DIES = "its swing dies away within an oscillation"
@@ -126,7 +128,7 @@ def steady(
         raise ValueError(f"the amplitude must be a positive number of rad (m), not {amplitude}")
     if refused := nothing_swings(scene):
         raise refused
-    loop = Loop(with_springs_held(scene), tolerance)
+    loop = Loop(with_springs_held(_own_system(scene)), tolerance)
     ready = time.perf_counter()
     loop.warm_up()
     warm = time.perf_counter()
@@ -135,6 +137,12 @@ def steady(
         raise refused
     wall = time.perf_counter() - begun - (warm - ready)
     return dataclasses.replace(cycle, simulated_s=loop.simulated, cells_s=loop.finder.seconds, wall_s=wall)
+
+
+def _own_system(scene: Scene) -> Scene:
+    """The scene without what cannot influence its escapement, such as a second watch beside it."""
+    found = roles(scene)
+    return next((part for part in systems_of(scene) if roles(part) == found), scene)
 
 
 class Search(NamedTuple):
@@ -297,13 +305,17 @@ def _by_run(loop: Loop, parts: Parts, why: str, duration: float | None = None, s
     """What an ordinary run settles to, from the scene's start or from that state."""
     if duration is None:
         duration = min(max(loop.scene.duration, FEWEST * parts.period), max(LONGEST, FEWEST * parts.period))
-    run = run_from(loop, state, duration)
-    seen = judged(run, since_start=state is None)
-    means = late_means(run)
-    message = f"{why}; this is the end of a run of {run.simulated:.4g} s"
-    if means.amplitude_deg is None or seen.name not in (TICKS, UNSETTLED, None):
-        return Cycle(False, seen.name, seen.message or message)
-    settled = (means.amplitude_deg_error or math.inf) <= SETTLED * means.amplitude_deg
+    while True:
+        run = run_from(loop, state, duration)
+        seen = judged(run, since_start=state is None)
+        means = late_means(run)
+        message = f"{why}; this is the end of a run of {run.simulated:.4g} s"
+        if means.amplitude_deg is None or seen.name not in (TICKS, UNSETTLED, None):
+            return Cycle(False, seen.name, seen.message or message)
+        settled = (means.amplitude_deg_error or math.inf) <= SETTLED * means.amplitude_deg
+        if settled or run.stop != Stop.DURATION or duration >= MOST * parts.period:
+            break
+        duration = min(LONGER * duration, MOST * parts.period)
     return Cycle(
         found=settled,
         verdict=(TICKS if parts.wheel >= 0 else None) if settled else UNSETTLED,
