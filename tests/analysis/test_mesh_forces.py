@@ -72,7 +72,9 @@ def test_what_the_racks_press_is_what_the_teeth_press(tmp_path: Path, noted_on: 
     first = noted_on == "rack of the first"
     contacts = SimpleNamespace(group=np.array([0]), a=np.array([0 if first else 1]))
     racks = SimpleNamespace(body=np.array([2, 3]))  # numbers 2 and 3, after the scene's two bodies
-    compiled = SimpleNamespace(model=SimpleNamespace(contacts=contacts, primitives=racks, bodies=[None] * 4), size=1.0)
+    compiled = SimpleNamespace(
+        model=SimpleNamespace(contacts=contacts, primitives=racks, bodies=[None] * 4), size=1.0, loose=()
+    )
     pressed = np.stack((f if first else -f, np.zeros(3)), axis=1)[:, None]
     loads = Loads(np.array([0]), np.zeros((3, 1, 2)), pressed)
     found = {one.body: one.force for one in mesh_forces(scene, compiled, None, loads)}

@@ -362,7 +362,9 @@ def slips(run: Trajectory, found: Forces) -> Array:
         pair = run.pairs[int(contact)]
         held = np.isfinite(found.point[:, k, 0])
         point, normal = found.point[held, k], found.direction[held, k]
-        slip = _speed(pair.body_a, places, rates, held, point) - _speed(pair.body_b, places, rates, held, point)
+        slip = _speed(pair.body_a, places, rates, held, point)
+        if pair.body_b != pair.body_a:  # that of a shaft in its hole, which stands still
+            slip -= _speed(pair.body_b, places, rates, held, point)
         along[held, k] = -normal[:, 1] * slip[:, 0] + normal[:, 0] * slip[:, 1]
     return along
 

@@ -70,7 +70,8 @@ def _of_racks(scene: Scene, compiled: Compiled, k: int, loads: Loads) -> tuple[A
     gear, hung = scene.gears[k], rides(scene.bodies)
     ways = rack_ways(scene, hung, gear, compiled.size)
     group = compiled.model.contacts.group[loads.ids]
-    own = np.flatnonzero(group == len(scene.contacts) + sum(one.stop is not None for one in scene.springs) + k)
+    before = len(scene.contacts) + len(compiled.loose) + sum(one.stop is not None for one in scene.springs)
+    own = np.flatnonzero(group == before + k)
     on_first = compiled.model.primitives.body[compiled.model.contacts.a[loads.ids[own]]]
     racks = len(compiled.model.bodies) - 2 * (len(scene.gears) - k)  # number of the first body's rack
     force = np.einsum("k,nkx->nx", np.where(on_first == racks, 1.0, -1.0), loads.pressed[:, own])
@@ -136,6 +137,8 @@ def _freed(scene: Scene, compiled: Compiled, free: Compiled, values: Array, rate
         own = free.slices.get(body.name)
         if own is not None and body.motion == "free":
             out[:, own] = values[:, compiled.slices[body.name]]
+        elif own is not None and body.name in compiled.loose:
+            out[:, free.columns(body.name)] = values[:, compiled.columns(body.name)]
         elif own is not None:
             out[:, own.start] = compiled.own(i, values, bool(rates))
     return out
@@ -325,7 +328,7 @@ def _pivots(
     contacts, primitives = compiled.model.contacts[loads_found.ids], compiled.model.primitives
     (on_a, on_b) = primitives.body[contacts.a], primitives.body[contacts.b]
     for i, (body, ride, load) in enumerate(zip(run.scene.bodies, hung, weighed, strict=True)):
-        if body.motion != "pivot" or ride.host >= 0:
+        if body.motion != "pivot" or ride.host >= 0 or body.name in compiled.loose:  # with play its bearing is a contact
             continue
         own = [k for k, other in enumerate(hung) if i in (k, other.part_of, other.host)]
         sign = np.isin(on_a, own).astype(float) - np.isin(on_b, own).astype(float)

@@ -7,7 +7,7 @@ a contact enter.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -16,6 +16,7 @@ from watchsim.contact.cell_frames import angle_of
 from watchsim.contact.cells import choose_cells
 from watchsim.mechanism.backlash import with_racks
 from watchsim.mechanism.contacts import coordinates_of_lines, declared_contacts, features, line_springs, near_contacts
+from watchsim.mechanism.play import in_the_middle, loose, widen, with_holes
 from watchsim.mechanism.shaken import feels, shaken
 from watchsim.model import (
     BEARING,
@@ -39,7 +40,7 @@ from watchsim.model import (
     records,
 )
 from watchsim.scene.forces import Side, Torque
-from watchsim.scene.roles import oscillators
+from watchsim.scene.roles import Oscillator, oscillators
 from watchsim.scene.scene import Body, Scene
 from watchsim.scene.trains import Bond, Ride, Weighed, bonds, felt, rides, weigh
 from watchsim.tolerances import CLEARANCE, SLOWEST_RATE, SPRING_AT_REST, UNIT_PHASE
@@ -65,12 +66,18 @@ class _Targets:
     """On which record does a spring, torque or damper act: its body's coordinate, or the joint with another body?"""
 
     def __init__(
-        self, scene: Scene, riding: tuple[Ride, ...], bound: tuple[Bond, ...], slices: dict[str, slice], rows: Records
+        self,
+        scene: Scene,
+        swinging: tuple[Oscillator, ...],
+        riding: tuple[Ride, ...],
+        bound: tuple[Bond, ...],
+        slices: dict[str, slice],
+        rows: Records,
     ) -> None:
-        self.scene, self.slices, self.rows = scene, slices, rows
+        self.scene, self.swinging, self.slices, self.rows = scene, swinging, slices, rows
         self._riding = {body.name: ride for body, ride in zip(scene.bodies, riding, strict=True)}
         self.bonds = {body.name: bond for body, bond in zip(scene.bodies, bound, strict=True)}
-        acting: list[tuple[str, str | None]] = [(one.body, None) for one in oscillators(scene)]
+        acting: list[tuple[str, str | None]] = [(one.body, None) for one in swinging]
         for forces in (scene.springs, scene.torques, scene.damping):
             acting += [(one.body, one.against) for one in forces]
         other = {ends: number for ends in dict.fromkeys(acting) if (number := self._other(*ends)) >= 0}
@@ -118,7 +125,13 @@ class _Targets:
 
 
 def forced_coordinates(
-    scene: Scene, riding: tuple[Ride, ...], bound: tuple[Bond, ...], slices: dict[str, slice], size: float, u: np.ndarray
+    scene: Scene,
+    swinging: tuple[Oscillator, ...],
+    riding: tuple[Ride, ...],
+    bound: tuple[Bond, ...],
+    slices: dict[str, slice],
+    size: float,
+    u: np.ndarray,
 ) -> Forced:
     """Coordinates with their forces; joints; force tables and their knots. `u`: velocities at the start.
 
@@ -133,7 +146,7 @@ def forced_coordinates(
             _inertias(scene, body, i, weighed[i], riding[i], rows[slices[body.name]], size)
             if any(bond.to == i != k for k, bond in enumerate(bound)) and body.prescribed is None:
                 rows[slices[body.name]].mass = masses[i]
-    targets = _Targets(scene, riding, bound, slices, rows)
+    targets = _Targets(scene, swinging, riding, bound, slices, rows)
     _weigh_geared(scene, weighed, targets)
     for spring in scene.springs:
         row = targets.row(spring.body, spring.against)
@@ -188,9 +201,14 @@ def forced_coordinates(
 def _bearings(scene: Scene, weighed: tuple[Weighed, ...], targets: _Targets) -> Records:
     """The pivots whose friction goes with their load, one row a body; what the weight alone makes goes into the coordinates."""
     numbers = {body.name: i for i, body in enumerate(scene.bodies)}
-    bearings = records(BEARING, len({bearing.body for bearing in scene.bearings}))
-    of = dict(zip(dict.fromkeys(bearing.body for bearing in scene.bearings), bearings, strict=True))
+    tight = [bearing.body for bearing in scene.bearings if not bearing.play]
+    bearings = records(BEARING, len(set(tight)))
+    of = dict(zip(dict.fromkeys(tight), bearings, strict=True))
     for bearing in scene.bearings:
+        if bearing.play:  # a contact; the stone under its end stays
+            lying = replace(bearing, radius=0.0).torque(weighed[numbers[bearing.body]].mass, scene.gravity)
+            targets.row(bearing.body).coulomb += lying
+            continue
         row, load = of[bearing.body], weighed[numbers[bearing.body]]
         row.body, row.coordinate = numbers[bearing.body], targets.number(bearing.body)
         row.grip += bearing.friction * bearing.radius
@@ -204,7 +222,7 @@ def _bearings(scene: Scene, weighed: tuple[Weighed, ...], targets: _Targets) -> 
 def _watch(scene: Scene, targets: _Targets) -> float:
     """Marks the coordinates that swing, with their rest positions; returns the largest stiffness over inertia among them."""
     largest = 0.0
-    for one in oscillators(scene):
+    for one in targets.swinging:
         if targets.on(one.body) < 0:
             row = targets.row(one.body)
             plain = one.weight == 0.0 and scene.body(one.body).motion == "pivot"
@@ -293,6 +311,15 @@ class Compiled:
     declared: tuple[int, ...] = ()  # pairs of primitives of each pair of bodies
     against: tuple[tuple[int, int, float], ...] = ()  # coordinates given relative to a carrier: (own, carrier's or -1, angle)
     geared: tuple[tuple[int, float, float], ...] = ()  # further columns: ratio times that coordinate plus shift
+    loose: frozenset[str] = (
+        frozenset()
+    )  # bodies with play, whose slice is their angle: two columns before it say where they are
+    seen: Model | None = None  # in which candidates are sought, where that is another: bodies with play in the middle of it
+
+    def columns(self, name: str) -> slice:
+        """All coordinates of a body."""
+        part = self.slices[name]
+        return slice(part.start - 2, part.stop) if name in self.loose else part
 
     def relative(self, q: np.ndarray, rates: bool = False) -> np.ndarray:
         """Rows of coordinates, or of their `rates`, as the scene gives them: carried bodies relative to their carriers.
@@ -310,7 +337,7 @@ class Compiled:
         """(rows,): the angle in the movement, or the travel, of the body of that number; `values` are rows of coordinates, or
         of their `rates`."""
         body = self.model.bodies[number]
-        return np.asarray(body.ratio * values[:, body.first] + (0.0 if rates else body.phase))
+        return np.asarray(body.ratio * values[:, angle_of(body)] + (0.0 if rates else body.phase))
 
 
 _last: dict[bool, tuple[Scene, Compiled]] = {}  # by `prefilter`: the scene compiled last, which most often is the next one
@@ -329,8 +356,10 @@ def compile_scene(scene: Scene, prefilter: bool = True) -> Compiled:
 
 def compiled_anew(scene: Scene, prefilter: bool) -> Compiled:
     """The same, of a scene that nobody will ask for again."""
-    size = scene_size(scene)
+    size, declared = scene_size(scene), scene
+    scene, shafts = with_holes(scene)
     scene, named = with_racks(scene, size)
+    named |= shafts
     riding = rides(scene.bodies)
     bound = bonds(scene.bodies, riding)
     bodies, q, u = _bodies(scene, riding, bound)
@@ -338,9 +367,11 @@ def compiled_anew(scene: Scene, prefilter: bool) -> Compiled:
     primitives, layers, owners, sides = _primitives(scene, riding, size)
     owners = tuple(named.get(owner, owner) for owner in owners)
     contacts, laws, pairs, counts = declared_contacts(scene, bodies, riding, sides, primitives, CLEARANCE * size)
-    forced = forced_coordinates(scene, riding, bound, slices, size, u)
-    near = near_contacts(bodies, primitives, contacts, pairs)
-    choose_cells(bodies, primitives, contacts, pairs, near)
+    forced = forced_coordinates(scene, oscillators(declared), riding, bound, slices, size, u)
+    widen(declared, pairs)
+    middle = in_the_middle(declared, bodies, primitives)
+    near = near_contacts(*middle, contacts, pairs)
+    choose_cells(*middle, contacts, pairs, near)
     if not prefilter:
         # The cells stay, so that time is parted in the same way; only their answers are not used.
         near = np.arange(len(contacts))
@@ -353,12 +384,16 @@ def compiled_anew(scene: Scene, prefilter: bool) -> Compiled:
             forced.parts[0].linear[first : first + (3 if bodies[row.body].motion == FREE else 1)] = 0
     parts = (bodies, *forced.parts, primitives, contacts, laws, pairs, near, shocks, jolts, heavy)
     model = Model(*(frozen(part) for part in parts))
+    with_play = frozenset(loose(declared))
+    seen = model._replace(bodies=frozen(middle[0]), primitives=frozen(middle[1])) if with_play else None
+    slices |= {name: slice(slices[name].stop - 1, slices[name].stop) for name in with_play}
     own = [(body.name, bond) for body, bond in zip(scene.bodies, bound, strict=True) if body.geared and body.name not in named]
     geared = tuple((int(bodies[bond.to].first), bond.given, bond.shift) for _, bond in own)
     slices |= {name: slice(len(q) + k, len(q) + k + 1) for k, (name, _) in enumerate(own)}
     unit, against = 10.0 ** round(math.log10(UNIT_PHASE / forced.slowest)), _against(riding, bodies, bound)
     return Compiled(
         *(model, layers, owners, slices, size, frozen(q), frozen(u), forced.fastest, unit, counts, against, geared),
+        *(with_play, seen),
     )
 
 

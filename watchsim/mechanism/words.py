@@ -103,6 +103,7 @@ def _force_lines(scene: Scene) -> Iterator[str]:
     for bearing in scene.bearings:
         friction = metric(bearing.torque(masses[bearing.body], scene.gravity), "N·m", 4)
         radii = f"radius {metric(bearing.radius, 'm')}" + (f", flat {metric(bearing.flat, 'm')}" if bearing.flat else "")
+        radii += f", play {metric(bearing.play, 'm')}" if bearing.play else ""
         yield f"  bearing of {bearing.body}: {radii}, friction {bearing.friction:g}, dry friction {friction} under its weight"
 
 

@@ -118,12 +118,18 @@ G = 9.80665  # m/s² (3rd CGPM, 1901)
 
 @dataclass(frozen=True, slots=True)
 class Bearing:
-    """Friction of a pivot under the weight of its body: friction × load × radius (m), `flat` on the cap stone."""
+    """Friction of a pivot under the load of its body: friction × load × radius (m), `flat` on the cap stone.
+
+    With `play` (m) the pivot is a shaft in a hole so much wider, in which it rolls and slides; at the start in its middle, or
+    where it touches the hole in the direction `side` (rad).
+    """
 
     body: str
     radius: float
     friction: float
     flat: float = 0.0
+    play: float = 0.0
+    side: float | None = None
 
     def torque(self, mass: float, gravity: Point) -> float:
         """Of dry friction, N·m, with a body of that mass (kg) in that gravity (m/s²) in the plane.

@@ -338,6 +338,13 @@ BEARING: Keys = {
         "equivalent radius of the end of the pivot on its cap stone, which carries the weight of a body that lies flat",
         limits=_not_negative(),
     ),
+    "play": _length(
+        "by how much the hole is wider than the pivot, which then rolls and slides in it",
+        limits=_not_negative("play cannot be negative: leave it out for none"),
+    ),
+    "side": _angle(
+        "where the pivot touches its hole at the start, seen from the middle", absent="nowhere: it is in the middle"
+    ),
 }
 SHOCK: Keys = {
     "at": Key(units.TIME, doc="when it begins", limits=_not_negative("a run begins at 0"), absent="0 s"),

@@ -72,7 +72,7 @@ def from_mapping(
     springs = read_springs(mapping, bodies, faults)
     torques = read_torques(mapping, bodies, faults)
     damping = read_damping(mapping, bodies, springs, heading.gravity, faults)
-    bearings = read_bearings(mapping, bodies, faults)
+    bearings = read_bearings(mapping, bodies, springs, geared.gears, faults)
     contacts = read_contacts(mapping, bodies, sound, heading.tangential_law, faults)
     line_springs = read_line_springs(mapping, bodies, faults)
     shocks, recordings = read_shocks(mapping, folder, faults, drawings)

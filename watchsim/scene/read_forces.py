@@ -29,7 +29,7 @@ from watchsim.scene.keys import (
 from watchsim.scene.read_contacts import read_against, repeated, rows_of
 from watchsim.scene.read_trains import BARREL, KEYS, mainspring_torque
 from watchsim.scene.roles import Oscillator, loads, oscillator
-from watchsim.scene.scene import Body
+from watchsim.scene.scene import Body, Gear
 from watchsim.scene.solids import HAIRSPRING
 from watchsim.scene.values import NAN, UNREADABLE, Table, listed
 from watchsim.units import LENGTH
@@ -265,10 +265,21 @@ def read_damping(
     return tuple(found)
 
 
-def read_bearings(mapping: Mapping[str, Any], bodies: tuple[Body, ...], faults: Faults) -> tuple[Bearing, ...]:
+def read_bearings(
+    mapping: Mapping[str, Any], bodies: tuple[Body, ...], springs: tuple[Spring, ...], gears: tuple[Gear, ...], faults: Faults
+) -> tuple[Bearing, ...]:
     """Pivots whose friction goes with the weight that they carry."""
     crowded = _crowded(bodies)
-    return tuple(_bearing(entry, crowded) for entry in _entries(mapping, "bearings", BEARING, bodies, faults))
+    found = tuple(_bearing(entry, crowded) for entry in _entries(mapping, "bearings", BEARING, bodies, faults))
+    bound = dict.fromkeys((name for gear in gears for name in gear.between), "meshes with a gear")
+    bound |= dict.fromkeys((one.body for one in springs if one.stop is not None), "has a spring with a stop")
+    named = [bearing.body for bearing in found]
+    bound |= {name: "has several bearings" for name in named if named.count(name) > 1}
+    for number, bearing in enumerate(found):
+        if bearing.play and (reason := bound.get(bearing.body)):
+            why = f"{bearing.body} {reason}, which is not simulated together with play of its pivot: leave out one"
+            faults.add(f"bearings.{number}.play", why)
+    return found
 
 
 def _crowded(bodies: tuple[Body, ...]) -> dict[str, str]:
@@ -291,7 +302,13 @@ def _bearing(entry: Entry, crowded: Mapping[str, str]) -> Bearing:
     elif body is not None and body.mass == 0.0:
         why = f"{body.name} has no weight: give it a mass or solids, or write coulomb under [[damping]]"
         table.fault("body", why, with_value=True)
-    return Bearing(entry.name, table.quantity("radius", NAN), table.quantity("friction", NAN), table.quantity("flat"))
+    radius, friction, flat = table.quantity("radius", NAN), table.quantity("friction", NAN), table.quantity("flat")
+    play = table.quantity("play")
+    if "side" in table and not play:
+        table.fault("side", 'says where the pivot lies in its play: write play = "8 µm" as well')
+    elif play and body is not None and body.inertia <= body.mass * math.hypot(*body.centre_of_mass) ** 2:
+        table.fault("play", f"needs the inertia about the centre of mass, and of {body.name} none is left: check its inertia")
+    return Bearing(entry.name, radius, friction, flat, play, table.quantity("side") if "side" in table else None)
 
 
 def _entries(mapping: Mapping[str, Any], section: str, keys: Keys, bodies: tuple[Body, ...], faults: Faults) -> Iterator[Entry]:

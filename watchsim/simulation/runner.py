@@ -225,7 +225,7 @@ class Run:
         self.options: Options = options_of(scene, compiled, tolerance)
         self.state: State = new_state(model, compiled.q, compiled.u)
         self.state.clock.step = FIRST_STEP * self.options.max_step
-        self.finder = CellFinder(model)
+        self.finder = CellFinder(compiled.seen or model)
         self.scratch = new_scratch(model)
         self.pairs = pairs_of(compiled)
         self.kept = Recorder(

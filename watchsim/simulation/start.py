@@ -144,7 +144,7 @@ def refusals(scene: Scene, compiled: Compiled) -> list[tuple[Overlap, str]]:
     return _clear(
         scene,
         compiled,
-        CellFinder(compiled.model),
+        CellFinder(compiled.seen or compiled.model),
         options_of(scene, compiled, scene.tolerance),
     )[2]
 

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from watchsim.mechanism.compile import Compiled, compiled_anew
 from watchsim.mechanism.overlap import overlap_faults
+from watchsim.mechanism.play import loose
 from watchsim.model import frozen, words_of
 from watchsim.scene.errors import SceneError
 from watchsim.scene.scene import Recording, Scene
@@ -109,7 +110,7 @@ class System:
         own, compiled = compiled_anew(part, prefilter), whole.compiled
         names = [body.name for body in whole.scene.bodies]
         self.bodies = np.array([names.index(body.name) for body in part.bodies])
-        ends = {name: compiled.slices[name] for name in own.slices}
+        ends = {name: compiled.columns(name) for name in own.slices}
         count = len(own.q)
         self.columns = np.concatenate([np.arange(ends[name].start, ends[name].stop) for name in own.slices])[:count]
         self.contacts = np.append(_numbers(part, own, whole.scene, compiled, place), -1)
@@ -221,7 +222,9 @@ def _numbers(
     """The numbers that the contacts of a system have in the whole."""
     names = {body.name for body in part.bodies if body.motion != "fixed" or body.on is not None}
     stopped = [spring for spring in whole.springs if spring.stop is not None]
-    groups = np.flatnonzero([bool(names & {*_ends(one)}) for one in (*whole.contacts, *stopped, *whole.gears)])
+    groups = np.flatnonzero(
+        [bool(names & {*_ends(one)}) for one in (*whole.contacts, *loose(whole).values(), *stopped, *whole.gears)]
+    )
     place = np.array([number[name] for name in _primitives(own)], np.int64)
 
     def keys(a: Integers, b: Integers, group: Integers) -> Integers:

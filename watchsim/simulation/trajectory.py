@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from watchsim.displays import notebook_html, player
 from watchsim.mechanism.compile import Compiled
+from watchsim.mechanism.play import loose
 from watchsim.scene.roles import frequency
 from watchsim.scene.scene import ALL, STATISTICS, Body, Scene, Window
 from watchsim.scene.trains import carried_last
@@ -54,8 +55,13 @@ NONE = slice(0, 0)
 def frames(scene: Scene, slices: Mapping[str, slice], q: Array) -> dict[str, Array]:
     """For every body (rows, 3): x, y (m) and angle (rad) in the movement; q (rows, n) with the columns `slices` says."""
     found: dict[str, Array] = {}
+    shafts = loose(scene)
     for body in carried_last(scene.bodies):
-        own = _own(body, q[:, slices.get(body.name, NONE)])
+        columns = slices.get(body.name, NONE)
+        own = _own(body, q[:, columns])
+        if body.name in shafts:
+            x, y, _ = _on(own, np.tile([*body.centre_of_mass, 0.0], (len(q), 1))).T
+            own[:, :2] += q[:, columns.start - 2 : columns.start] - np.stack([x, y], axis=1)
         found[body.name] = own if body.on is None else _on(found[body.on], own)
     return found
 
@@ -64,8 +70,14 @@ def speeds(scene: Scene, slices: Mapping[str, slice], q: Array, u: Array) -> dic
     """For every body (rows, 3): the velocity of its origin (m/s) and its turning rate (rad/s) in the movement."""
     places = frames(scene, slices, q)
     found: dict[str, Array] = {}
+    shafts = loose(scene)
     for body in carried_last(scene.bodies):
-        own = _own_speed(body, u[:, slices.get(body.name, NONE)])
+        columns = slices.get(body.name, NONE)
+        own = _own_speed(body, u[:, columns])
+        if body.name in shafts:
+            arm = _on(places[body.name], np.tile([*body.centre_of_mass, 0.0], (len(u), 1))) - places[body.name]
+            drift = own[:, 2:] * np.stack([-arm[:, 1], arm[:, 0]], axis=1)
+            own[:, :2] += u[:, columns.start - 2 : columns.start] - drift
         if body.on is not None:
             arm, carrier = places[body.name] - places[body.on], found[body.on]
             own = own + carrier + carrier[:, 2:] * np.stack([-arm[:, 1], arm[:, 0], np.zeros(len(arm))], axis=1)

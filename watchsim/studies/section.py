@@ -116,6 +116,8 @@ def why_no_section(compiled: Compiled, parts: Parts) -> str:
         return "a torque over time drives the mechanism, so that no state of it comes back"
     if any(own == parts.coordinate for own, _, _ in compiled.against) or model.coordinates[parts.coordinate].watched == 0:
         return "the oscillator rides on a moving body"
+    if compiled.loose:
+        return f"the pivot of {min(compiled.loose)} has play, in which it does not come to rest while the oscillator turns back"
     return ""
 
 
@@ -164,7 +166,7 @@ class Loop:
         self.compiled: Compiled = like.compiled if like else compile_scene(scene)
         model = self.compiled.model
         self.options = options_of(scene, self.compiled, tolerance)
-        self.finder: CellFinder = like.finder if like else CellFinder(model)
+        self.finder: CellFinder = like.finder if like else CellFinder(self.compiled.seen or model)
         self._scratch = new_scratch(model)
         self._record = new_record(model, ROWS_PER_STEP + 64, EVENTS + EVENTS_PER_CONTACT * room_for(model), NO_ROWS)
         self.simulated = 0.0  # s, over all states
