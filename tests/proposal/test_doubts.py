@@ -131,3 +131,22 @@ def test_two_levers_are_doubted(tmp_path: Path) -> None:
     """The passing spring of a detent, drawn as a part that turns by itself."""
     found = propose([assembly(scene_of("detent"), tmp_path / "detent.dxf", "own")])
     assert any("no second lever of an escapement" in words for words in found.doubts)
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("coaxial", ()),
+        ("duplex", ()),
+        ("snail", ()),
+        ("verge", ("foliot is all that moves, and nothing meets it", "nothing strikes anything")),
+        ("detent", ("passing is no second lever", "does not work: t = ")),
+    ],
+)
+def test_a_proposal_is_tried_and_what_does_not_work_is_said(
+    name: str, words: tuple[str, ...], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = assembly(scene_of(name), tmp_path / f"{name}.dxf", "body")
+    assert main(["new", str(path), "-o", str(tmp_path / "out"), "--json"]) == 0
+    said = json.loads(capsys.readouterr().out)["doubts"]
+    assert len(said) == len(words) and all(part in one for part, one in zip(words, said, strict=True))

@@ -22,6 +22,8 @@ def doubts(roles: Sequence[Role], facings: Sequence[Facing], apart: bool, leans:
         found += [f"{role.name} meets nothing that moves or holds it: {_cure(role)}" for role in moving if role.name not in met]
         found += _chain(roles, facings)
         found += _heights(moving, facings)
+    elif not found and moving and not facings and len(roles) > 1:
+        found.append(f"{moving[0].name} is all that moves, and nothing meets it: no pivot was found for the other parts")
     found += _centres(moving)
     wheel = first_of(roles, WHEEL)
     stopped = any(role.task in (LEVER, OSCILLATOR, CLICK) for role in roles)

@@ -18,14 +18,17 @@ from watchsim.proposal.pieces import (
     CLICK,
     DRIVER,
     FIXED,
+    FORK,
     LEVER,
     OSCILLATOR,
+    RESTING,
     WHEEL,
     Floats,
     Piece,
     Region,
     facing_by_name,
     ring,
+    tokens,
     united,
 )
 from watchsim.proposal.roles import Role
@@ -33,6 +36,7 @@ from watchsim.proposal.roles import Role
 SWING = math.radians(15.0)  # of a lever or click, to either side
 STEPS = 7
 MARGIN = 0.01  # of the whole size: what comes as near as this is taken to meet
+BETTER = ((FORK, "pin", "impulse"), (RESTING, "roller", "pallet"))  # of a surface: what it meets sooner than another, by name
 OVER = 0.02  # of the smaller area: what overlaps more lies at different heights
 
 
@@ -63,10 +67,19 @@ def facings(roles: Sequence[Role], size: float) -> tuple[list[Facing], list[Faci
             if not (one.moves or other.moves) or _misses(one, other):
                 continue
             met = [facing for a in one.part.layers for b in other.part.layers if (facing := _facing(one, a, other, b, size))]
-            kept = [facing for facing in met if facing.by_name] or [one for one in met if not _lies_over(one, roles)]
+            kept = _best_named([facing for facing in met if facing.by_name]) or [
+                one for one in met if not _lies_over(one, roles)
+            ]
             likely += kept
             others += [facing for facing in met if facing not in kept]
     return likely, others
+
+
+def _best_named(named: list[Facing]) -> list[Facing]:
+    """Without those of which a better one is there: of a co-axial's fork with the impulse stone, and the like."""
+    words = [set(tokens(facing.first_layer)) | set(tokens(facing.second_layer)) for facing in named]
+    rivals = [(one, worse) for one, better, worse in BETTER if any(one & found and better in found for found in words)]
+    return [facing for facing, found in zip(named, words, strict=True) if not any(a & found and b in found for a, b in rivals)]
 
 
 def _lies_over(facing: Facing, roles: Sequence[Role]) -> bool:

@@ -251,9 +251,9 @@ WHEEL, LEVER, OSCILLATOR, CLICK, DRIVER, FIXED = "wheel", "lever", "oscillator",
 PARTS = {
     **dict.fromkeys(("wheel", "escapewheel", "rad", "gangrad", "ankerrad", "hemmungsrad", "roue", "gear", "pinion"), WHEEL),
     **dict.fromkeys(("ratchet", "sperrrad", "sperrad", "rochet", "star", "stern", "étoile"), WHEEL),
-    **dict.fromkeys(("lever", "anker", "anchor", "ancre", "detent"), LEVER),
+    **dict.fromkeys(("lever", "anker", "anchor", "ancre", "detent", "passing"), LEVER),
     **dict.fromkeys(("click", "pawl", "jumper", "klinke", "sperrklinke", "sperrkegel", "raste", "cliquet", "sautoir"), CLICK),
-    **dict.fromkeys(("follower", "tappet", "fühler", "palpeur"), CLICK),
+    **dict.fromkeys(("follower", "tappet", "rack", "fühler", "palpeur", "rechen", "râteau"), CLICK),
     **dict.fromkeys(("cam", "came", "nocken", "kurvenscheibe", "snail", "schnecke", "limaçon"), DRIVER),
     **dict.fromkeys(("cross", "malteserkreuz", "croix"), WHEEL),
     **dict.fromkeys(("driver", "crank", "finger", "kurbel", "mitnehmer", "manivelle", "doigt"), DRIVER),
@@ -278,7 +278,8 @@ FORK = frozenset(("fork", "horn", "horns", "gabel", "fourchette"))
 PIN = frozenset(("pin", "jewel", "impulse", "hebelstein"))
 GUARD = frozenset(("dart", "guard"))
 ROLLER = frozenset(("safety", "roller"))
-FACING = ((TEETH, STONES), (TEETH, CLICKS), (FORK, PIN), (GUARD, ROLLER))
+RESTING = frozenset(("resting", "repos", "ruhe"))  # the long teeth of a duplex wheel
+FACING = ((TEETH, STONES), (TEETH, CLICKS), (FORK, PIN), (GUARD, ROLLER), (RESTING, ROLLER))
 
 
 def tokens(name: str) -> list[str]:
