@@ -12,6 +12,7 @@ import math
 import threading
 import time
 from collections import OrderedDict
+from collections.abc import Sequence
 from typing import NamedTuple
 from weakref import WeakValueDictionary
 
@@ -114,18 +115,21 @@ def _cells(axis: Axis, travel: float, reach: float, fold: int = 1, ratio: float 
 Integers = NDArray[np.int64]
 Cell = tuple[int, ...]
 KEPT = 32  # pairs of bodies, besides those of runs under way
+FEW_CELLS = 100  # of a pair: a run that moves on passes more
 MOST_CELLS = 1 << 18  # of one pair; beyond it its answers are forgotten
 
 _store: OrderedDict[bytes, Known] = OrderedDict()
 _used: WeakValueDictionary[bytes, Known] = WeakValueDictionary()
+_usual: OrderedDict[tuple[object, ...], Known] = OrderedDict()  # by pair and cells: whose cells alike geometry asks for, too
 _lock = threading.Lock()
 
 
 class Known:
     """The candidates of one pair of bodies in the cells searched so far, numbered from the pair's first contact."""
 
-    def __init__(self, search: PairSearch) -> None:
-        self._search = search
+    def __init__(self, search: PairSearch, usual: Sequence[Cell] = ()) -> None:
+        """`usual`: cells that are searched with the first ones, for they are likely to be needed."""
+        self._search, self._usual = search, usual
         self._found: dict[Cell, Integers] = {}
         self._lock = threading.Lock()
 
@@ -141,13 +145,15 @@ class Known:
         with self._lock:
             if len(self._found) > MOST_CELLS:
                 self._found.clear()
-            new = [i for i, cell in enumerate(map(tuple, index.tolist())) if cell not in self._found]
+            asked = dict.fromkeys(map(tuple, index.tolist()))
+            asked.update(() if self._found else dict.fromkeys(self._usual))
+            new = [cell for cell in asked if cell not in self._found]
             if not new:
                 return
-            count, found = self._search.candidates(index[new])
+            count, found = self._search.candidates(np.array(new, np.int64))
             found, stops = found.astype(np.int64), np.cumsum(count).tolist()
             parts = [found[start:stop] for start, stop in zip([0, *stops], stops, strict=False)]
-            self._found.update(zip(map(tuple, index[new].tolist()), parts, strict=True))
+            self._found.update(zip(new, parts, strict=True))
 
     def answers(self, cells: list[Cell]) -> tuple[Integers, Integers]:
         """Numbers of candidates of `cells`, and the candidates one after another."""
@@ -164,10 +170,25 @@ def known_cells(model: Model, p: int, loose: Integers) -> Known:
     with _lock:
         known = _store.pop(key, None) or _used.get(key)
         if known is None:
-            known = Known(PairSearch(model, p, loose))
+            known = _made(model, p, loose)
         _store[key] = _used[key] = known
         while len(_store) > KEPT:
             _store.popitem(last=False)
+    return known
+
+
+def _made(model: Model, p: int, loose: Integers) -> Known:
+    """Of a mechanism with a dimension changed a little the bodies pass the same cells: one search for all, not one for each
+    stretch of the way. It costs time where they do not, and changes no answer."""
+    pair = model.pairs[p]
+    shape = tuple(int(pair[f"{name}{i}"]) for i in range(pair.axes) for name in ("c", "on", "wrap", "fold"))
+    alike = (p, int(pair.a), int(pair.b), int(pair.stop - pair.start), *shape)
+    usual = _usual.pop(alike, None)
+    known = Known(PairSearch(model, p, loose), () if usual is None else usual.cells())
+    # The first one, so that its cells do not become more and more; another where that went hardly anywhere.
+    _usual[alike] = known if usual is None or len(usual) < FEW_CELLS else usual
+    while len(_usual) > KEPT:
+        _usual.popitem(last=False)
     return known
 
 
@@ -176,6 +197,7 @@ def forget() -> None:
     with _lock:
         _store.clear()
         _used.clear()
+        _usual.clear()
 
 
 def _digest(model: Model, p: int) -> bytes:
@@ -233,7 +255,8 @@ class CellFinder:
         before = len(pair.known)
         if self.number > MOST:
             self._forget()
-        self._insert_cells(p, pair.known_around(q, u))
+        around = pair.known_around(q, u)
+        self._insert_cells(p, around if before else pair.known.cells())
         self.learned += len(pair.known) - before
         self.seconds += time.perf_counter() - start
         return self.cells

@@ -138,8 +138,11 @@ class Function:
     swung: tuple[float, float] | None = None
 
 
-def measure(scene: Scene, compiled: Compiled | None = None, few: int | None = None) -> Function:
-    """Measure a scene; never raises for a mechanism that has no such geometry. Of teeth that are alike `few` are enough."""
+def measure(scene: Scene, compiled: Compiled | None = None, few: int | None = None, fork_too: bool = True) -> Function:
+    """Measure a scene; never raises for a mechanism that has no such geometry. Of teeth that are alike `few` are enough.
+
+    Without `fork_too` neither fork nor impulses are measured, only what locks and guards the lever.
+    """
     free = ungeared(scene)
     compiled = compiled if compiled is not None and free is scene else compile_scene(free)
     parts = parts_of(scene, compiled)
@@ -174,10 +177,10 @@ def measure(scene: Scene, compiled: Compiled | None = None, few: int | None = No
         return Function(parts, number, None, pallets, sides, (shown[0], shown[1]), missing=tuple(missing), swung=banks)
     made, guards, pushes = None, None, None
     try:
-        made, guards, pushes = _balance(scene, hands, parts, banks, beats)
+        made, guards, pushes = _balance(scene, hands, parts, banks, beats if fork_too else [])
     except NotMeasured as reason:
         missing.append(("lift angle of the balance, shake of the pin, safety action", str(reason)))
-    if made is not None and guards is None:
+    if (made is not None or not fork_too) and guards is None:
         missing.append(("freedoms of guard pin and horns", f"nothing but the pin stops {parts.lever} between its banks"))
     return Function(parts, number, banks, pallets, sides, (shown[0], shown[1]), made, guards, pushes, tuple(missing))
 
@@ -265,19 +268,20 @@ def _entries(scene: Scene, hands: Hands, parts: Parts, banks: tuple[float, float
 
 def _balance(
     scene: Scene, hands: Hands, parts: Parts, banks: tuple[float, float], beats: list[Passage]
-) -> tuple[Fork, tuple[Safety, Safety] | None, tuple[Impulse, Impulse] | None]:
+) -> tuple[Fork | None, tuple[Safety, Safety] | None, tuple[Impulse, Impulse] | None]:
+    """Of no beats the safety action alone."""
     balance, entries = _entries(scene, hands, parts, banks)
+    sides = list(zip(banks, (1.0, -1.0), entries, strict=True))
     try:
-        made = fork(balance, banks, beats, entries)
-        sides = list(zip(banks, (1.0, -1.0), entries, strict=True))
-        pushes = [impulse(balance, bank, entry, [one for one in beats if one.side == side]) for bank, side, entry in sides]
+        made = fork(balance, banks, beats, entries) if beats else None
+        pushes = [impulse(balance, bank, entry, [one for one in beats if one.side == side]) for bank, side, entry in sides if beats]
     except ValueError as reason:
         raise NotMeasured(str(reason)) from reason
     guards = [safety(balance, bank, side, entry) for bank, side, entry in sides]
     return (
         made,
         None if guards[0] is None or guards[1] is None else (guards[0], guards[1]),
-        None if pushes[0] is None or pushes[1] is None else (pushes[0], pushes[1]),
+        None if not pushes or pushes[0] is None or pushes[1] is None else (pushes[0], pushes[1]),
     )
 
 

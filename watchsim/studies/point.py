@@ -16,16 +16,18 @@ from typing import Any
 from watchsim.analysis.timing import mean_over
 from watchsim.analysis.verdict_kinds import TICKS
 from watchsim.escapement.measure import measure
+from watchsim.mechanism.compile import compile_scene
 from watchsim.scene.errors import SceneError
 from watchsim.scene.load import changed
 from watchsim.scene.read_settings import FUNCTION
 from watchsim.scene.roles import roles
 from watchsim.scene.scene import Scene
+from watchsim.simulation.options import options_of
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.state import Stop
 from watchsim.studies.all_cycles import judged
 from watchsim.studies.axes import Value
-from watchsim.studies.section import Loop, freed_start
+from watchsim.studies.section import freed_start
 from watchsim.studies.steady import steady
 
 
@@ -119,11 +121,11 @@ def function_of(scene: Scene, few: int | None = None) -> Row:
 
     lock, total_lock, run, draw (the less of both ends), drop: the least; freedom of the lever on its bank: the largest.
     """
-    found = measure(scene, few=few or None)
+    found = measure(scene, None, few or None, fork_too=False)
     if found.pallets is None and found.parts is not None:  # a body that was moved a little may overlap where it starts
-        loop = Loop(scene, scene.tolerance)
-        freed = freed_start(loop.compiled, loop.options)
-        found = found if freed is None else measure(scene, replace(loop.compiled, q=freed), few or None)
+        compiled = compile_scene(scene)
+        freed = freed_start(compiled, options_of(scene, compiled, scene.tolerance))
+        found = found if freed is None else measure(scene, replace(compiled, q=freed), few or None, fork_too=False)
     row: Row = {}
     for name, fields in PARTS.items():
         each = [getattr(one, field) for one in found.pallets or () for field in fields]

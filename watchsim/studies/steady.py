@@ -186,13 +186,13 @@ def _shot(led: Led, brief: bool, state: State | None) -> Cycle:
     """What the run goes to, and how exactly it is known; `state` where it began, None at the scene's start."""
     oscillate, found = led.oscillate, led.found
     loop, parts = oscillate.loop, oscillate.parts
+    if brief and isinstance(found, Fixed) and abs(found.slope) < 1.0:
+        return _cycle(loop, parts, glanced(oscillate, found))
     exact_to = (max(FINER * loop.tolerance, FINEST_TOLERANCE), min(COARSER * loop.tolerance, COARSEST_TOLERANCE))
     others = tuple(Loop(loop.scene, tolerance, like=loop) for tolerance in exact_to)
     if isinstance(found, Lost):
         again = _after_several(oscillate, found.amplitude, others) if found.trouble == UNSETTLED else None
         return again or _by_run(loop, parts, NO_REPEAT, led.time + AFTERWARDS * parts.period, state)
-    if brief and abs(found.slope) < 1.0:
-        return _cycle(loop, parts, glanced(oscillate, found))
     exact = _closed(oscillate, found, others)
     loop.simulated += sum(other.simulated for other in others)
     if isinstance(exact, Return):
