@@ -8,14 +8,14 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.contact.gaps import poses
-from watchsim.escapement.turning import describe, turn_to_touch, turns_to_touch
+from watchsim.escapement.turning import WIDTH, describe, jumps, lead_on, turn_to_touch, turns_to_touch
 from watchsim.geometry.primitives import Point
 from watchsim.mechanism.compile import Compiled
 from watchsim.scene.roles import drive_direction, partners, roles
@@ -151,9 +151,9 @@ class Hands:
         self.compiled, self.model = compiled, compiled.model
         self.room = ROOM * compiled.size
         self.resolution = JOINT_RESOLUTION * compiled.size  # m: what outlines leave open
-        self._pose, self._row = poses(len(self.model.bodies)), np.zeros(5)
+        self.pose, self._row = poses(len(self.model.bodies)), np.zeros(5)
         self._pairs = np.column_stack((self.model.contacts.a, self.model.contacts.b))
-        self._pivots = self._pose["x"], self._pose["y"]
+        self._pivots = self.pose["x"], self.pose["y"]
         self._owner: list[int] = self.model.primitives.body.tolist()
         self._bodies: list[int] = self.model.coordinates.body.tolist()
 
@@ -165,18 +165,18 @@ class Hands:
     ) -> Touch | None:
         """Where body `name` first touches, turned from q in direction `sense` by -`behind` to `reach` rad; None: nowhere."""
         i = self.coordinate(name)
-        turn, contact = turn_to_touch(self.model, ids, q, self._bodies[i], sense, (-behind, reach), self.room, self._pose)
+        turn, contact = turn_to_touch(self.model, ids, q, self._bodies[i], sense, (-behind, reach), self.room, self.pose)
         return Touch(float(q[i]) + sense * turn, int(contact)) if contact >= 0 else None
 
     def turns(self, name: str, ids: Integers, q: Array, sense: float, reach: float, moved: int, angles: list[float]) -> Array:
         """How far body `name` can be turned from q until it touches, rad, with coordinate `moved` at each of the angles."""
         found, body = np.empty(len(angles)), self._bodies[self.coordinate(name)]
         at = np.array(angles, dtype=float)
-        turns_to_touch(self.model, ids, q.copy(), moved, at, body, sense * reach, self.room, (found, self._pose))
+        turns_to_touch(self.model, ids, q.copy(), moved, at, body, sense * reach, self.room, (found, self.pose))
         return found
 
     def meeting(self, contact: int, q: Array) -> Meeting:
-        describe(self.model, contact, q, self._pose, self._row)
+        describe(self.model, contact, q, self.pose, self._row)
         _, nx, ny, x, y = self._row.tolist()
         first, second = self._pairs[contact].tolist()
         rates = {}
@@ -188,7 +188,7 @@ class Hands:
 
     def gap(self, contact: int, q: Array) -> float:
         """How far apart the two primitives of a contact are, m."""
-        describe(self.model, contact, q, self._pose, self._row)
+        describe(self.model, contact, q, self.pose, self._row)
         return float(self._row[0])
 
     def flat_of(self, contact: int) -> int:
@@ -201,7 +201,7 @@ class Hands:
 
     def pivot(self, name: str, q: Array) -> Point:
         """Where a body's origin is (m)."""
-        describe(self.model, 0, q, self._pose, self._row)
+        describe(self.model, 0, q, self.pose, self._row)
         x, y = (float(value[self.body(name)]) for value in self._pivots)
         return x, y
 
@@ -210,11 +210,7 @@ class Hands:
         return self.resolution / max(abs(rate), self.resolution)
 
 
-STEP = math.radians(0.25)  # of the lever, in the search for changes
-WIDTH = 1e-11  # rad of the lever: a change is known to that
-LEVEL = 1e-7  # a wheel that turns by less than that share of the lever's turn stands still
-JUMP = 2.0  # times what its slope explains, and a little: the wheel has been let off
-LITTLE = math.radians(0.02)
+REACH = 1.2  # pitches: so far the wheel is let run
 NEIGHBOURS = 0.75  # of a pitch to both sides: what is looked at while a tooth rests
 
 
@@ -291,11 +287,10 @@ class Wheel:
         q[self._lever], q[self._wheel] = lever, wheel
         return q
 
-    def rest(self, lever: float, wheel: float, led: float, ids: Integers | None = None) -> Rest | None:
+    def rest(self, lever: float, wheel: float, led: float) -> Rest | None:
         """Where the wheel, let go at `wheel`, rests; None where it is free for a pitch. `led`: ±1, the lever's way."""
         q = self.at(lever, wheel)
-        ids = self.parts.to_wheel if ids is None else ids
-        touch = self.hands.touch(self.parts.wheel, ids, q, self.parts.way, 1.2 * self.pitch)
+        touch = self.hands.touch(self.parts.wheel, self.parts.to_wheel, q, self.parts.way, REACH * self.pitch)
         return None if touch is None else self._described(lever, touch, led)
 
     def room(self, rest: Rest) -> float:
@@ -319,7 +314,7 @@ class Wheel:
             stretches.append(Stretch(here, last))
             if last.lever == end:
                 return Sweep(tuple(stretches), tuple(let_offs), tuple(rooms))
-            if after is not None and not self._jumps(last, after):
+            if after is not None and not jumps(last.lever, last.wheel, last.slope, after.lever, after.wheel, after.slope):
                 here = after
                 continue
             # Beyond the last place at which the tooth is held: let go at the wheel's own angle there.
@@ -332,39 +327,18 @@ class Wheel:
 
     def _stretch(self, here: Rest, end: float, led: float, ids: Integers, back: float) -> tuple[Rest, Rest | None]:
         """The last rest of the same kind as `here`, and what is found just beyond it."""
-
-        def at(lever: float, near: Rest) -> Rest | None:
-            return self.rest(lever, near.wheel - self.parts.way * back, led, ids)
-
-        good = here
-        while good.lever != end:
-            lever = good.lever + led * min(STEP, abs(end - good.lever))
-            lever = end if abs(end - lever) < WIDTH else lever
-            found = at(lever, good)
-            if found is None or self._differs(good, found):
-                return self._change(good, lever, found, at)
-            good = found
-        return good, None
-
-    def _change(
-        self, good: Rest, bad: float, beyond: Rest | None, at: Callable[[float, Rest], Rest | None]
-    ) -> tuple[Rest, Rest | None]:
-        while abs(bad - good.lever) > WIDTH:
-            lever = 0.5 * (good.lever + bad)
-            found = at(lever, good)
-            if found is None or self._differs(good, found):
-                bad, beyond = lever, found
-            else:
-                good = found
-        return good, beyond
-
-    def _differs(self, one: Rest, other: Rest) -> bool:
-        same = one.contact == other.contact and _sign(one.slope) == _sign(other.slope)
-        return not same or self._jumps(one, other)
-
-    def _jumps(self, one: Rest, other: Rest) -> bool:
-        way = abs(other.lever - one.lever)
-        return abs(other.wheel - one.wheel) > JUMP * max(abs(one.slope), abs(other.slope)) * way + LITTLE
+        *last, lever, wheel, contact = lead_on(
+            self.hands.model,
+            ids,
+            self._q.copy(),
+            (self._wheel, self._lever, self._wheel_body, self._lever_body),
+            (here.lever, here.wheel, here.contact, here.slope),
+            end,
+            (self.parts.way, led, back, REACH * self.pitch, self.hands.room),
+            self.hands.pose,
+        )
+        found = self._described(last[0], Touch(last[1], last[2]), led)
+        return found, None if contact < 0 else self._described(lever, Touch(wheel, contact), led)
 
     def _again(self, rest: Rest, led: float) -> Rest:
         """The same place, seen with the lever led the other way."""
@@ -402,7 +376,3 @@ class Wheel:
             self._places = np.where(np.isnan(a), b, a)
         off = (self._places - self._polar[tooth] + math.pi) % math.tau - math.pi
         return np.ascontiguousarray(self.parts.to_wheel[np.abs(off) <= NEIGHBOURS * self.pitch])
-
-
-def _sign(slope: float) -> int:
-    return 0 if abs(slope) <= LEVEL else (1 if slope > 0.0 else -1)

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from watchsim.escapement.by_hand import WIDTH, Array, Hands, Integers, Parts, Rest, Stretch, Touch
+from watchsim.escapement.by_hand import Array, Hands, Integers, Parts, Rest, Stretch, Touch
+from watchsim.escapement.turning import WIDTH
 from watchsim.geometry.primitives import GOLDEN
 
 # One measured number: its mean over the teeth, the tooth that is furthest from it, and how exact it is.

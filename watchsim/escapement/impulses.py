@@ -9,8 +9,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from watchsim.escapement.by_hand import JUMP, LITTLE, WIDTH, Array, Hands, Rest, Touch, Wheel
+from watchsim.escapement.by_hand import Array, Hands, Rest, Touch, Wheel
 from watchsim.escapement.fork_and_pin import Balance, Direct, Entry, Passage, Quantity, change_error, over_teeth
+from watchsim.escapement.turning import JUMP, LITTLE, WIDTH
 from watchsim.model import ARC, FULL
 
 # The balance is led on from where its pin has unlocked the wheel; pin and fork carry the lever along, the wheel follows the

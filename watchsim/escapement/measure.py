@@ -9,9 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from watchsim.analysis.watch import Teeth, teeth
-from watchsim.escapement.by_hand import LEVEL, SLACK, Hands, Parts, Rest, Stretch, Sweep, Wheel, parts_of
+from watchsim.escapement.by_hand import SLACK, Hands, Parts, Rest, Stretch, Sweep, Wheel, parts_of
 from watchsim.escapement.fork_and_pin import Balance, Direct, Entry, Fork, NotMeasured, Passage, Safety, fork, safety
 from watchsim.escapement.impulses import Impulse, Pallet, Roller, impulse, pallet
+from watchsim.escapement.turning import LEVEL
 from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.scene.roles import hinged_pallets, oscillators, pitch
 from watchsim.scene.scene import Scene
@@ -274,7 +275,9 @@ def _balance(
     sides = list(zip(banks, (1.0, -1.0), entries, strict=True))
     try:
         made = fork(balance, banks, beats, entries) if beats else None
-        pushes = [impulse(balance, bank, entry, [one for one in beats if one.side == side]) for bank, side, entry in sides if beats]
+        pushes = [
+            impulse(balance, bank, entry, [one for one in beats if one.side == side]) for bank, side, entry in sides if beats
+        ]
     except ValueError as reason:
         raise NotMeasured(str(reason)) from reason
     guards = [safety(balance, bank, side, entry) for bank, side, entry in sides]

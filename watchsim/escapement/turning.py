@@ -114,3 +114,73 @@ def describe(model, k, q, out_pose, out_row):
     shape = shape_of_contact(contact, a, b, out_pose[a.body], out_pose[b.body])
     out_row[0], out_row[1], out_row[2] = shape[0], shape[1], shape[2]
     out_row[3], out_row[4] = out_pose[a.body].x + shape[5], out_pose[a.body].y + shape[6]
+
+
+STEP = math.radians(0.25)  # of the lever, in the search for changes
+WIDTH = 1e-11  # rad of the lever: a change is known to that
+LEVEL = 1e-7  # a wheel that turns by less than that share of the lever's turn stands still
+JUMP = 2.0  # times what its slope explains, and a little: the wheel has been let off
+LITTLE = math.radians(0.02)
+
+
+@entry
+def jumps(lever, wheel, slope, lever_then, wheel_then, slope_then):
+    """Has the wheel gone further between two rests than their slopes explain?"""
+    way = abs(lever_then - lever)
+    return abs(wheel_then - wheel) > JUMP * max(abs(slope), abs(slope_then)) * way + LITTLE
+
+
+@kernel
+def _level(slope):
+    return 0 if abs(slope) <= LEVEL else (1 if slope > 0.0 else -1)
+
+
+@kernel
+def _let_go(model, ids, q, own, lever, wheel, hold, out_pose):
+    """(contact, wheel, slope): where the wheel, turned back and let go, rests; contact -1 where it is free over `reach`."""
+    way, led, back, reach, room = hold
+    wheel -= way * back
+    q[own[0]], q[own[1]] = wheel, lever
+    turn, k = _turn_to_touch(model, ids, q, own[2], way, (0.0, reach), room, out_pose)
+    if k < 0:
+        return -1, wheel, 0.0
+    wheel += way * turn
+    q[own[0]] = wheel
+    place(model, q, q, out_pose)
+    contact = model.contacts[k]
+    a, b = model.primitives[contact.a], model.primitives[contact.b]
+    shape = shape_of_contact(contact, a, b, out_pose[a.body], out_pose[b.body])
+    x, y = out_pose[a.body].x + shape[5], out_pose[a.body].y + shape[6]
+    sign = 1.0 if a.body == own[2] else -1.0
+    of_wheel = sign * ((x - out_pose[own[2]].x) * shape[2] - (y - out_pose[own[2]].y) * shape[1])
+    of_lever = -sign * ((x - out_pose[own[3]].x) * shape[2] - (y - out_pose[own[3]].y) * shape[1])
+    return k, wheel, -way * led * of_lever / of_wheel
+
+
+@entry
+def lead_on(model, ids, q, own, here, end, hold, out_pose):
+    """(lever, wheel, contact) of the last rest of the same kind as `here`, and the same of what is just beyond it, its contact
+    -1 where the wheel is free there, or where that one is at `end`.
+
+    own   coordinates of wheel and lever, their bodies
+    here  (lever, wheel, contact, slope) of a rest
+    hold  (way, led, back, reach, room): ±1, in which the wheel is driven and the lever led; by how much the wheel is turned back
+          before it is let go, and how far it may run, rad; `room` as of `turn_to_touch`
+    q and `out_pose` are scratch.
+    """
+    good, wheel, contact, slope = here
+    bad, beyond, k = end, wheel, -1
+    is_bad = False
+    while good != end and not (is_bad and abs(bad - good) <= WIDTH):
+        if is_bad:
+            lever = 0.5 * (good + bad)
+        else:
+            lever = good + hold[1] * min(STEP, abs(end - good))
+            lever = end if abs(end - lever) < WIDTH else lever
+        met, there, leans = _let_go(model, ids, q, own, lever, wheel, hold, out_pose)
+        other = met != contact or _level(leans) != _level(slope)
+        if other or jumps(good, wheel, slope, lever, there, leans):
+            bad, beyond, k, is_bad = lever, there, met, True
+        else:
+            good, wheel, slope = lever, there, leans
+    return good, wheel, contact, bad, beyond, k
