@@ -164,8 +164,8 @@ def lead_on(model, ids, q, own, here, end, hold, out_pose):
 
     own   coordinates of wheel and lever, their bodies
     here  (lever, wheel, contact, slope) of a rest
-    hold  (way, led, back, reach, room): ±1, in which the wheel is driven and the lever led; by how much the wheel is turned back
-          before it is let go, and how far it may run, rad; `room` as of `turn_to_touch`
+    hold  (way, led, back, reach, room): ±1, in which the wheel is driven and the lever led; by how much the wheel is turned
+          back before it is let go, and how far it may run, rad; `room` as of `turn_to_touch`
     q and `out_pose` are scratch.
     """
     good, wheel, contact, slope = here
