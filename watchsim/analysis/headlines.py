@@ -248,7 +248,9 @@ def _places(run: Trajectory, numbers: Mapping[str, Any]) -> Iterator[tuple[str, 
 
 def _contacts(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     per_second = f", {numbers['impacts'] / numbers['simulated_s']:.0f} per second" if numbers["simulated_s"] > 0.0 else ""
-    yield "impacts", f"{numbers['impacts']}{per_second}; {numbers['events']} events"
+    series = numbers["events_by_kind"]["accumulation"]
+    rough = f"; those in {series} series of rebounds depend on where these are ended" if series else ""
+    yield "impacts", f"{numbers['impacts']}{per_second}{rough}; {numbers['events']} events"
     depth = numbers["worst_penetration_m"]
     deep = f"by up to {metric(depth, 'm', 2)}" if depth >= NO_PENETRATION else f"by less than {1e9 * NO_PENETRATION:g} nm"
     yield "penetration", f"bodies overlapped {deep}"
