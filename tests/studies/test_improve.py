@@ -170,6 +170,8 @@ def test_designs_that_do_not_tick_turn_the_search_back():
     drive = found.keys["torques.0.value"][1]
     run = ws.simulate(changed(scene, {"torques.0.value": drive}), 6.0)
     assert judged(run, since_start=True).name in ("ticks", "unsettled")
+    beyond = ws.simulate(changed(scene, {"torques.0.value": f"{1.02 * float(drive)!r} N·m"}), 6.0)
+    assert judged(beyond, since_start=True).name == "knocks"
 
 
 @pytest.mark.slow
