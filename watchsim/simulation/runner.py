@@ -67,8 +67,8 @@ FEWEST_STEPS, MORE_STEPS, MOST_STEPS = 64.0, 4.0, 4000.0  # of a slice; steps ma
 class Pace:
     """The length of the next slice, from how long the last one took."""
 
-    def __init__(self, duration: float) -> None:
-        self.duration = duration
+    def __init__(self, duration: float, wall: float = SLICE_WALL) -> None:
+        self.duration, self.wall = duration, wall
         self.length = 1e-2 * duration  # s, simulated; grows tenfold at most: a long slice would be deaf
         self.steps = FEWEST_STEPS
         self.start = self.begun = 0.0
@@ -81,7 +81,7 @@ class Pace:
 
     def end(self, now: float, until: Until) -> None:
         """Learn from the slice that came to its end."""
-        pace = SLICE_WALL / max(time.perf_counter() - self.start, 1e-4)
+        pace = self.wall / max(time.perf_counter() - self.start, 1e-4)
         if until.steps > 0.0:
             self.length = min(max((now - self.begun) * pace, 1e-9 * self.duration), 10.0 * self.length)
         self.steps = min(max(pace * (self.steps - until.steps), 1.0), MORE_STEPS * self.steps, MOST_STEPS)
@@ -218,6 +218,7 @@ class Run:
 
     method = EVENT_DRIVEN
     step: float | None = None  # s, where steps are fixed
+    slice_wall = SLICE_WALL
 
     def __init__(self, scene: Scene, compiled: Compiled, tolerance: float, recording: Recording) -> None:
         model = compiled.model
@@ -357,7 +358,7 @@ class Run:
 
     def _slices(self, duration: float, progress: Progress | None, interrupted: Callable[[], bool]) -> Stop:
         """Slice after slice, with what has to be done between them."""
-        pace = Pace(duration)
+        pace = Pace(duration, self.slice_wall)
         until = new_until(0.0, duration)
         look = self.watch.next_look(float(self.state.clock.time))
         while True:

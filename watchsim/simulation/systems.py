@@ -28,7 +28,7 @@ from watchsim.scene.scene import Recording, Scene
 from watchsim.simulation.merged_rows import merge_rows
 from watchsim.simulation.overlap_watch import NO_OVERLAP
 from watchsim.simulation.recording import RowsToMake
-from watchsim.simulation.runner import ROWS, Run, widened
+from watchsim.simulation.runner import ROWS, SLICE_WALL, Run, widened
 from watchsim.simulation.saved_state import AHEAD, SavedState
 from watchsim.simulation.scratch import Until, new_until
 from watchsim.simulation.state import EVENT_DTYPE, Stop, arrays_of
@@ -249,6 +249,7 @@ def _primitives(compiled: Compiled) -> Iterator[tuple[str, str, int]]:
 
 # How do they run side by side?
 
+FEW = 10  # systems, with slices as long as those of one
 SEEN = 2000  # rows of a system in which overlaps are looked for together
 
 
@@ -272,6 +273,9 @@ class SystemsRun(Run):
         windows = np.stack([wide[:, :, 0].min(axis=0), wide[:, :, 1].max(axis=0)], axis=1)
         for one in self.systems:
             one.run.record = one.run.record._replace(windows=windows)
+        # What a slice costs each of them beside its steps grows with their number, and so must what it does.
+        self._many = max(1.0, len(parts) / FEW)
+        self.slice_wall = SLICE_WALL * self._many
         self._merged = -math.inf  # s: rows and events before that are handed on
         self._is_over = False
         self._stored = np.zeros(len(parts))  # J, at the start, of each
@@ -357,7 +361,7 @@ class SystemsRun(Run):
         # Those that wait for the last step do not slow down the others.
         going = [self.systems[k].time for k, stop in stops.items() if stop == Stop.SLICE]
         self.state.clock.time = min(going, default=self.state.clock.time)
-        if sum(one.waiting[0] for one in self.systems) > ROWS // 4:
+        if sum(one.waiting[0] for one in self.systems) > self._many * ROWS // 4:
             self.flush()
         return failed if failed != Stop.RUNNING else min(stops.values(), key=ORDER.index)
 
