@@ -53,8 +53,8 @@ KEYS = ("amplitude_deg", "beats", "missed_beats", "verdict")
 
 def teeth_of(scene: Scene) -> int:
     """Of the wheel that is judged: of two mechanisms the bodies of the second have a 2 in their names."""
-    first, *_, last = scene.title.rsplit(" ", 1)[0].split(" beside ")
-    return TEETH[(last if (roles(scene).wheel or "").endswith(" 2") else first).split()[0]]
+    profiles = scene.title.rsplit(" ", 1)[0].split(" beside ")
+    return TEETH[profiles[-1 if (roles(scene).wheel or "").endswith(" 2") else 0]]
 
 
 def means(run: Trajectory, size: int) -> np.ndarray:

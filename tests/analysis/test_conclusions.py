@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import pytest
 from every_time import few
 from ordinary.geared_escapements import with_train
@@ -83,3 +84,16 @@ def test_without_a_lift_angle_it_is_still_said_that_it_has_not_settled() -> None
     """What swings through its rest position is judged; a click on its ratchet never does."""
     assert concluded(replace(profile("graham"), lift_angle=None), 30.0, "statistics")["verdict"] == "unsettled"
     assert concluded(profile("ratchet"), 1.0, "statistics")["verdict"] is None
+
+
+def test_a_wheel_that_goes_to_and_fro_stands() -> None:
+    """An escape wheel moved by 0.2 mm: after 14 s each tooth is thrown back to where it came from. Three half swings end half a
+    pitch further than they began."""
+    scene = profile("grasshopper")
+    for k, torque in enumerate((-1.0427935734281793e-06, 1.0427935734281793e-06, -0.0004171174293712717)):
+        scene = scene.set(f"torques.{k}.value", torque)
+    wheel, *others = scene.bodies
+    scene = replace(scene, bodies=(replace(wheel, position=(-0.00013023634525889351, -0.00014087605510079267)), *others))
+    run = ws.simulate(scene, 20.13)
+    assert np.ptp(run.sample(np.linspace(18.0, 20.13, 500))[0][:, run.slices["wheel"].start]) > 0.05
+    assert ws.verdict(run).name == "stops"

@@ -171,8 +171,8 @@ class Standstill:
 def standstill(run: Trajectory, found: Beats) -> Standstill | None:
     """None while the watch ticks, where the run is shorter than three half swings, or where there is no escapement.
 
-    The watch stands if the wheel did not advance (by half of what a beat takes) in the last three half swings; where that was
-    not recorded, if the oscillator did not pass its rest position in that time.
+    The watch stands if the wheel did not advance (by half of what a beat takes) in the last three half swings, or four; where
+    that was not recorded, if the oscillator did not pass its rest position in that time.
     """
     parts = roles(run.scene)
     if parts.oscillator is None or parts.wheel is None or not keeps_time(run.scene):
@@ -182,10 +182,11 @@ def standstill(run: Trajectory, found: Beats) -> Standstill | None:
         return None
     whole = pitch(run.scene, parts.wheel)
     least = SMALLEST_ADVANCE if whole is None else 0.25 * whole
-    ends = np.array([start, run.simulated])
+    # Where it only goes to and fro, it has advanced in an odd number of half swings, and not in an even one.
+    ends = np.array([max(0.0, start - 0.5 * nominal_period(run, parts.oscillator)), start, run.simulated])
     if is_recorded(run, ends).all():
-        first, last = progress(run, parts.wheel, ends)
-        if last - first >= least:
+        *first, last = progress(run, parts.wheel, ends)
+        if last - max(first) >= least:
             return None
         earlier = np.flatnonzero(np.abs(progress(run, parts.wheel, run.t) - last) > STILL * least)
         since = float(run.t[earlier[-1]]) if len(earlier) else float(run.t[0])
