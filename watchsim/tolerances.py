@@ -178,6 +178,12 @@ PASSAGE_RESOLUTION = 1e-16
 # tolerances: defect of a step's extension. Its path is off by a fifth of that: in lever scenes by 6 at most, in a step that has
 # grown too fast by 200. Large: contacts close early or late; small: needless steps.
 DEFECT = 30.0
+# tolerances: share of the kinetic energy by which the energy on a step's path may miss the work done on it, where forces go
+# with loads, slips or a case that moves; and rounding of both. Large: a ledger that opens where events cut long steps; small:
+# short steps.
+LEDGER_OF_PATH, LEDGER_ROUNDING = 1e-3, 7e-15
+# Of the step that errors allow: the shortest that the ledger may ask for.
+LEAST_FOR_LEDGER = 1.0 / 64.0
 # rad of the fastest coordinate's own time scale: the longest flight. Large: longer buffers; small: more steps.
 FLIGHT_PHASE = 1.6
 # Events within an instant, and impacts and decisions in a row at one event, at most. Large: hangs; small: ends runs.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ from scipy.special import ellipj, ellipk
 
 from watchsim.analysis.forces import forces
 from watchsim.scene.errors import SceneError
+from watchsim.scene.forces import Shock
 from watchsim.scene.load import from_mapping
 from watchsim.scene.scene import Scene
 from watchsim.simulation.simulate import simulate
@@ -141,6 +143,14 @@ def test_a_lever_with_play_in_all_its_pivots_ticks_and_no_candidate_is_missed() 
     for name in ("balance", "lever", "wheel"):
         off = np.hypot(*(places[name][:, :2] - scene.body(name).position).T)
         assert 0.99 * OFF < off.max() < OFF + 1e-10
+
+
+def test_a_blow_on_a_lever_with_loaded_bearings_keeps_the_ledger() -> None:
+    scene = lever_with_play()
+    tight = tuple(replace(bearing, play=0.0) for bearing in scene.bearings)
+    blow = Shock(0.15, 0.35e-3, (2.6e4, 1.5e4))
+    run = simulate(replace(scene, bearings=tight, shocks=(blow,), gravity=(0.0, -G)), 1.0)
+    assert run.energy["residual_relative"] < 1e-10
 
 
 @pytest.mark.parametrize(

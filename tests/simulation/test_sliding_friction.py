@@ -72,6 +72,14 @@ def test_the_period_of_stick_slip_is_the_closed_form() -> None:
     assert run.energy["residual_relative"] < 1e-9
 
 
+@pytest.mark.parametrize(
+    "slip", [SlipLaw(STATIC - SLIDING), SlipLaw(STATIC - SLIDING, 0.02), SlipLaw(STATIC - SLIDING, 0.02, 0.5)]
+)
+@pytest.mark.parametrize("tolerance", [1e-8, 1e-9])
+def test_the_ledger_closes_at_usual_tolerances_where_slips_end_long_steps(slip: SlipLaw, tolerance: float) -> None:
+    assert ws.simulate(belt(slip, 1.0), tolerance=tolerance).energy["residual_relative"] < 1e-11
+
+
 def test_time_stepping_slips_as_long_to_its_order() -> None:
     """The error of the period goes with the step."""
     errors = []

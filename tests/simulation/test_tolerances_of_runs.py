@@ -102,6 +102,7 @@ def test_lengths_and_speeds_go_with_the_size_of_the_scene() -> None:
         "max_step": 0.25,
         "natural": math.inf,
         "size": SIZE,
+        "ledger": 0.0,
     }
     assert found._asdict() == pytest.approx(expected, rel=1e-12, abs=0.0)
 

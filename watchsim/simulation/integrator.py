@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from watchsim.contact.gaps import OPEN, STICK, normal_gap, place
 from watchsim.dynamics.delassus import copy
+from watchsim.dynamics.forces import stored_energy
 from watchsim.jit import kernel
 from watchsim.simulation.closed_contacts import is_explained, kinetic_energy, refresh
 from watchsim.simulation.coupled_motion import (
@@ -43,6 +44,8 @@ from watchsim.tolerances import (
     DEFECT,
     DEPENDENT_IN_STEPS,
     HIDDEN_REBOUND,
+    LEAST_FOR_LEDGER,
+    LEDGER_ROUNDING,
     MONITOR_SAMPLES,
     RATES_TURNED,
     ROOT_RESOLUTION,
@@ -418,6 +421,25 @@ def _defect(model, tolerance, h, step):
 
 
 @kernel
+def _imbalance(model, options, h, greatest, smooth):
+    """By how much energy on the extended path misses the work done, over what it may; above 1: to be repeated.
+
+    Where an event cuts the step, its sums are read there. `greatest`: of the kinetic energy so far, J.
+    """
+    step, n = smooth.step, len(model.coordinates)
+    for i in range(len(step.y0)):
+        smooth.y[i] = dense_value(step, i, PROBE * h)
+    before, after = (
+        stored_energy(model, step.y0[:n], step.y0[n : 2 * n]),
+        stored_energy(model, smooth.y[:n], smooth.y[n : 2 * n]),
+    )
+    drive, damping, friction = smooth.y[2 * n], smooth.y[2 * n + 1], smooth.y[2 * n + 2]
+    turned = before + after + abs(drive) + abs(damping) + abs(friction)
+    allowed = options.ledger * max(greatest, kinetic_energy(model, smooth.y[n : 2 * n])) + LEDGER_ROUNDING * turned
+    return abs(after - before - drive + damping + friction) / allowed if allowed > 0.0 else 0.0
+
+
+@kernel
 def _begin_step(model, state, smooth):
     """Begin a coupled step at the state."""
     step, regime = smooth.step, state.regime
@@ -444,7 +466,7 @@ def coupled_step(model, state, options, longest, event_after, smooth):
     # Only where a contact is to close: what ends at a knot of a force over time may turn back twice on the way.
     short, shrunk = beyond < min(h, SHORT * state.clock.step), False
     h = min(h, beyond)
-    smooth.held.jammed = 0
+    smooth.held.jammed, least = 0, 0.0
     at_start = _stage(model, regime, options, short, 0, h, smooth, state.counts)  # whatever the length of the step
     copy(smooth.monitors, smooth.before)
     if smooth.held.jammed:
@@ -461,6 +483,9 @@ def coupled_step(model, state, options, longest, event_after, smooth):
             step.span.length = h
             smallest = min(smallest, _extend(model, regime, options, short, h, smooth, state.counts))
             defect = _defect(model, tolerance, h, step)
+            if options.ledger > 0.0 and h > least:
+                least = max(least, LEAST_FOR_LEDGER * h)
+                defect = max(defect, _imbalance(model, options, h, state.worst.kinetic_energy, smooth))
             error = defect if defect > 1.0 else error
             error = math.inf if smooth.held.jammed else error
         factor = min(GROW, max(SHRINK, SAFETY * error**-0.125)) if error > 0.0 else GROW

@@ -9,6 +9,7 @@ import math
 from typing import TYPE_CHECKING, NamedTuple
 
 from watchsim.jit import by_reference, kernel
+from watchsim.scene.forces import CONSTANT
 from watchsim.tolerances import (
     ACCUMULATION_SPEED,
     ACCUMULATION_TIME,
@@ -22,6 +23,7 @@ from watchsim.tolerances import (
     GAP_CLOSE,
     GAP_ZERO,
     JOINT_RESOLUTION,
+    LEDGER_OF_PATH,
     SLEEP,
     SPEED_PER_TOLERANCE,
     SPEED_ZERO,
@@ -50,6 +52,7 @@ class Options(NamedTuple):
     max_step: float  # s, from the duration the scene gives; see `longest_step`
     natural: float  # s, `natural_step`
     size: float  # m, the scene's size
+    ledger: float  # share of the kinetic energy by which that of a step's path may miss the ledger; 0: not looked at
 
 
 OptionsRef = by_reference(Options, __name__)
@@ -77,12 +80,15 @@ def options_for(size: float, tolerance: float, longest: float, natural: float = 
         max_step=min(longest, natural),
         natural=natural,
         size=size,
+        ledger=0.0,
     )
 
 
 def options_of(scene: Scene, compiled: Compiled, tolerance: float) -> Options:
-    """Options for a run of this scene."""
-    return options_for(compiled.size, tolerance, scene.duration, natural_step(compiled), compiled.unit)
+    """Options for a run of this scene. The ledger is watched where forces go with loads, slips or a case that moves."""
+    found = options_for(compiled.size, tolerance, scene.duration, natural_step(compiled), compiled.unit)
+    slips = any(contact.slip != CONSTANT for contact in scene.contacts)
+    return found._replace(ledger=LEDGER_OF_PATH * tolerance) if scene.bearings or scene.shocks or slips else found
 
 
 def natural_step(compiled: Compiled) -> float:
