@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 import shutil
 
 import pytest
@@ -63,6 +64,26 @@ def test_the_run_of_a_scene_differs_from_it_in_nothing_and_curves_of_both_are_dr
     assert "Nothing was changed in the scene." in capsys.readouterr().out
     assert [picture.read_text().count(f'<g id="{place}">') for place in (first, second)] == [3, 3]
     assert ws.compare(first, ws.load(GRAHAM)).changed == {}
+
+
+def test_a_design_and_its_drawings_written_out_are_the_same_scene(tmp_path, capsys):
+    words = (("new", "geneva", "-o", str(tmp_path / "a")), ("new", "geneva", "-o", str(tmp_path / "b"), "--drawings"))
+    assert [main([*one]) for one in words] == [0, 0]
+    capsys.readouterr()
+    assert ws.compare(tmp_path / "a", tmp_path / "b").changed == {}
+
+
+def test_a_page_shows_the_last_in_motion_and_the_outlines_of_the_first_over_it(tmp_path, capsys):
+    graham = ws.load(GRAHAM)
+    for name, lock in (("a", "0.4°"), ("b", "0.6°")):
+        ws.write_results(ws.simulate(graham.set("design.lock", lock), 4.0), tmp_path / name)
+    page = tmp_path / "both.html"
+    assert main(["compare", str(tmp_path / "a"), str(tmp_path / "b"), "-o", str(page)]) == 0
+    text = page.read_text()
+    data = json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', text)[1])
+    outlines = [{(one["layer"], one["codes"], one["numbers"]) for one in part["parts"]} for part in (data, data["ghost"])]
+    assert {layer for layer, *_ in outlines[0] ^ outlines[1]} == {"PALLETS"}
+    assert "design.lock" in text and "What came of it" in text
 
 
 def test_run_against_an_earlier_one_prints_the_differences(tmp_path, capsys):

@@ -22,6 +22,7 @@ from scipy.ndimage import maximum_filter, minimum_filter
 from watchsim.analysis.forces import forces
 from watchsim.analysis.sound import BLOW
 from watchsim.geometry.loops import polyline
+from watchsim.pages.compare_page import comparison_page
 from watchsim.pages.report_page import page_text, report
 from watchsim.paths import profiles_dir
 from watchsim.render.movie import frame
@@ -34,6 +35,7 @@ from watchsim.scene.load import load
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.state import EventKind
 from watchsim.simulation.trajectory import Trajectory
+from watchsim.studies.compare import compare, side_of
 
 pytestmark = pytest.mark.slow
 SIZE = (1280, 720)
@@ -461,3 +463,15 @@ def test_a_processor_has_time_for_sixty_frames_a_second(written: Path) -> None:
         assert page.said == []
     assert found.frames > 10
     assert found.busy / found.frames < 1.0 / 60.0
+
+
+def test_a_comparison_shows_the_old_outlines_as_ghosts_and_g_hides_them(tmp_path: Path) -> None:
+    graham = load(profiles_dir() / "graham")
+    sides = [side_of(simulate(graham.set("design.lock", lock), 4.0)) for lock in ("0.4°", "0.6°")]
+    with opened(comparison_page(compare(*sides), tmp_path / "both.html")) as page:
+        shown = [page.evaluate("window.watchsim.ghost()")]
+        for _ in range(2):
+            page.keyboard.press("g")
+            shown.append(page.evaluate("window.watchsim.ghost()"))
+        assert shown[0] > 0 and shown == [shown[0], 0, shown[0]]
+        assert page.said == [] and len(page.asked) == 1

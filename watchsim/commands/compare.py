@@ -21,18 +21,21 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "sources", metavar="RUN|SCENE", nargs="+", help="results folders or scenes, two or more, the old one first"
     )
-    parser.add_argument("-o", "--output", metavar="FILE", help="plots over each other: a name ending in .png, .svg or .pdf")
+    parser.add_argument(
+        "-o", "--output", metavar="FILE", help="plots over each other (.png, .svg, .pdf), or a page in motion (.html)"
+    )
     parser.add_argument("--json", action="store_true", help="print one JSON object")
 
 
 def run(args: argparse.Namespace) -> int:
     from watchsim.commands.inputs import secured_file
     from watchsim.commands.plot import FORMATS
+    from watchsim.pages.report_page import ENDINGS
     from watchsim.studies.compare import compare
 
     target = None if args.output is None else Path(args.output)
-    if target is not None and target.suffix[1:] not in FORMATS:
-        raise InputError(f"-o {target}: the name of the plot ends in one of .{', .'.join(FORMATS)}.")
+    if target is not None and target.suffix[1:] not in FORMATS and target.suffix not in ENDINGS:
+        raise InputError(f"-o {target}: the name ends in .html for a page, or for a plot in one of .{', .'.join(FORMATS)}.")
     if len(args.sources) < 2:
         raise InputError("compare: name two results folders or scenes at least.")
     if target is not None:
@@ -89,11 +92,16 @@ def text(found: Comparison) -> str:
 
 
 def _draw(found: Comparison, target: Path, silent: bool) -> None:
+    from watchsim.pages.compare_page import comparison_page
+    from watchsim.pages.report_page import ENDINGS
     from watchsim.render.compare_plot import plot_comparison
     from watchsim.render.style import save
     from watchsim.storage.write import write_file
 
-    figure = plot_comparison(found)
-    write_file(target, lambda path: save(figure, path), "the plots")
+    if target.suffix in ENDINGS:
+        comparison_page(found, target)
+    else:
+        figure = plot_comparison(found)
+        write_file(target, lambda path: save(figure, path), "the plots")
     if not silent:
         print(target)

@@ -177,8 +177,14 @@ def _places(scene: Scene, bodies: Mapping[str, Mapping[str, float]]) -> Iterator
 
 
 def _changed(scenes: Sequence[Scene]) -> dict[str, tuple[Any, ...]]:
-    """Key -> its values, of those keys that are not the same everywhere; dimensions of a design first."""
+    """Key -> its values, of those keys that are not the same everywhere; dimensions of a design first.
+
+    Of scenes that do not all follow from one design, the drawings and numbers are compared that they come to.
+    """
     flat = [dict(_flat(_completed(scene))) for scene in scenes]
+    designs = {one.get(f"{DESIGN}.of") for one in flat}
+    if len(designs) > 1:
+        flat = [{key: value for key, value in one.items() if not key.startswith(f"{DESIGN}.")} for one in flat]
     keys = sorted(dict.fromkeys(key for one in flat for key in one), key=lambda key: not key.startswith(f"{DESIGN}."))
     found = {}
     for key in keys:

@@ -101,6 +101,13 @@ const chipOf = (body, b) => {
   return { b, button, value, read: (t) => `${minus(within(factor * rows.at(t, k, 0)).toFixed(slide ? 3 : body.round ? 1 : 2))}${unit}` };
 };
 
+// The outlines of what a page compares with, over those of the run that it shows.
+const spook = (on) => {
+  scenery.ghost = [];
+  if (on && data.ghost) scenery.haunt({ ...data.ghost, parts: data.ghost.parts.map((part) => ({ ...part, path: pathOf(part) })) });
+  dirty = true;
+};
+
 // Show a run in place of the one before, if there is one: time, view, what is chosen and pressed stay as they are.
 const open = (told) => {
   const old = player && { data, view, player, plots, sound, solids, names };
@@ -109,6 +116,7 @@ const open = (told) => {
   data = told;
   motion = new Motion(data); view = new View(data); scenery = new Scenery(data); contacts = new Contacts(data); clock = new Clock(data);
   sound = new Sound(data); solids = new Solids(data, $("solid")); names = new Names(data);
+  spook(true);
   player = new Player(data, { motion, view, scenery, solids, names, contacts, clock, sound });
   player.changed = () => { dirty = true; };
   curves = new Curves(data, motion, contacts, view);
@@ -255,7 +263,7 @@ for (const [id, act] of Object.entries(presses)) $(id).addEventListener("click",
 const keys = {
   " ": () => player.toggle(), ",": () => player.step(-1), ".": () => player.step(1), "[": () => player.stepPhase(-1), "]": () => player.stepPhase(1), "<": () => player.setSpeed(player.speedIndex - 1), ">": () => player.setSpeed(player.speedIndex + 1),
   Home: () => player.seek(player.start), End: () => player.seek(player.end), "+": () => zoomBy(1.25), "=": () => zoomBy(1.25), "-": () => zoomBy(0.8), "\u2212": () => zoomBy(0.8), 0: fit,
-  n: followNext, Escape: release, x: () => player.chosen >= 0 && player.fade(player.chosen), a: toggles.adapt, c: toggles.touch, f: toggles.push, s: toggles.tick, t: toggles.theme, 3: toggles.space, l: toggles.label,
+  n: followNext, Escape: release, x: () => player.chosen >= 0 && player.fade(player.chosen), a: toggles.adapt, c: toggles.touch, f: toggles.push, s: toggles.tick, t: toggles.theme, 3: toggles.space, l: toggles.label, g: () => spook(!scenery.ghost.length),
 };
 const arrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 document.addEventListener("keydown", (event) => {
@@ -321,6 +329,7 @@ window.watchsim = {
   coils: () => { const poses = motion.poses(player.t); return scenery.coils.map((coil) => coil.pathData(poses)); },
   zigzags: () => { const poses = motion.poses(player.t); return scenery.zigzags.map((one) => one.pathData(view, poses)); },
   parts: () => scenery.parts.map(({ body, layer, pale }) => ({ body, layer, pale: Boolean(pale) })),
+  ghost: () => scenery.ghost.length,
   pace: () => ({ fps, drawn }),
 };
 new ResizeObserver(resize).observe($("picture"));
