@@ -133,6 +133,8 @@ def main(argv: list[str] | None = None) -> int:
 
 def _parsed(argv: list[str]) -> argparse.Namespace:
     """What was typed; ends the program where it cannot be parsed."""
+    if argv[:1] == ["--completion"]:  # as a command of its own would be typed
+        argv = ["schema", *argv]
     top, first = parser(), next((word for word in argv if not word.startswith("-")), "")
     if first and first not in COMMANDS:
         hint = meant(first, COMMANDS) or f" Commands: {', '.join(COMMANDS)}."

@@ -34,7 +34,7 @@ from watchsim.render.marks import clock
 from watchsim.render.palette import looks
 from watchsim.render.parts import parts
 from watchsim.render.rows import envelope
-from watchsim.render.style import passing, with_room
+from watchsim.render.style import ShownFigure, passing, with_room
 from watchsim.scene.scene import Body, Scene
 
 
@@ -66,6 +66,24 @@ def test_every_plot_is_as_wide_as_asked_and_cuts_no_word(run: ws.Trajectory, kin
     figure = PLOTS[kind](run, width=85.0)
     assert width_mm(figure) == pytest.approx(85.0)
     assert faults(figure) == []
+
+
+@pytest.mark.parametrize("kind", PLOTS)
+def test_a_plot_takes_the_place_of_some_axes_and_leaves_the_rest_alone(run: ws.Trajectory, kind: str) -> None:
+    """All that is drawn lies in the left half, and holds as many panels and words as in a figure of its own."""
+    whole = ShownFigure(figsize=(14.0, 8.0))
+    ours, theirs = whole.subplots(1, 2)
+    part, alone = PLOTS[kind](run, ax=ours), PLOTS[kind](run)
+    assert ours not in whole.axes and theirs in whole.axes and part.figure is whole
+    assert len(part.axes) == len(alone.axes) == len(whole.axes) - 1
+    assert [text.get_text() for text in part.texts] == [text.get_text() for text in alone.texts]
+    drawn = [panel.get_position().transformed(part.transSubfigure - whole.transFigure) for panel in part.axes]
+    assert all(0.0 <= box.x0 < box.x1 <= theirs.get_position().x0 for box in drawn)
+
+
+def test_axes_that_lie_in_no_grid_are_refused(run: ws.Trajectory) -> None:
+    with pytest.raises(ValueError, match="axes of a grid"):
+        ws.plot_timing(run, ax=ShownFigure().add_axes((0.1, 0.1, 0.8, 0.8)))
 
 
 @pytest.mark.parametrize("kind", few(PLOTS, lambda kind: kind in ("timeline", "energy")))

@@ -23,7 +23,7 @@ OVER = 1.0  # period, of the last swing that is shown
 Curve = Callable[[Trajectory], tuple[Array, Array]]
 
 
-def plot_comparison(found: Comparison, width: float = style.FULL) -> Figure:
+def plot_comparison(found: Comparison, width: float = style.FULL, ax: Axes | None = None) -> Figure:
     """A panel for each of them with a colour for each run; a figure `width` mm wide to save as PNG, SVG or PDF.
 
     ValueError where nothing swings in any of the runs, or scenes were not run (`watchsim.studies.compare.with_run`).
@@ -36,7 +36,7 @@ def plot_comparison(found: Comparison, width: float = style.FULL) -> Figure:
         ("angle, last oscillation (°)", "time since the rest position (ms)", _last, "-"),
         ("gain (ms)", "time (s)", _gain, "."),
     )
-    made = style.figure(width, style.HEADING + KEY + len(rows) * (TALL + BETWEEN) + FOOT)
+    made = style.figure(width, style.HEADING + KEY + len(rows) * (TALL + BETWEEN) + FOOT, ax=ax)
     style.heading(made, runs[0][1].scene.title, " and ".join(name for name, _ in runs))
     for k, (label, along, curve, look) in enumerate(rows):
         top = style.HEADING + KEY + k * (TALL + BETWEEN)

@@ -37,7 +37,11 @@ MANY = 2  # beats
 
 
 def plot_energy(
-    run: Trajectory, window: Sequence[float] | None = None, width: float = style.FULL, beats: list[Beat] | None = None
+    run: Trajectory,
+    window: Sequence[float] | None = None,
+    width: float = style.FULL,
+    beats: list[Beat] | None = None,
+    ax: Axes | None = None,
 ) -> Figure:
     """Bars: what the drive, springs and weights put in over the whole run and where it went; below, phase by phase of the last
     two beats of a window where there is an escapement.
@@ -54,7 +58,7 @@ def plot_energy(
     whole = ROW * len(shares.went_to)
     each = ROW * max((len(own) for own in stages), default=0)
     step = OVER + each + UNDER
-    made = style.figure(width, style.HEADING + OVER + whole + UNDER + (KEY if rows else 0.0) + rows * step)
+    made = style.figure(width, style.HEADING + OVER + whole + UNDER + (KEY if rows else 0.0) + rows * step, ax=ax)
     closes = f", the account closes to {abs(run.energy.get('residual_relative', 0.0)):.0e}"
     style.heading(made, run.scene.title, f"{metric(shares.supplied, 'J', 4)} put in over {run.simulated:.6g} s{closes}")
     top = style.HEADING + OVER
@@ -146,7 +150,7 @@ def _key(made: Figure, axes: Axes, top: float) -> None:
     handles.append((Line2D([], [], color=INK, linewidth=1.2), "work of the drive"))
     width, height = style.size_mm(made)
     corner = (style.EDGE / width, 1.0 - (top + KEY) / height)
-    where: dict[str, Any] = {"bbox_to_anchor": corner, "bbox_transform": made.transFigure, "ncols": len(handles)}
+    where: dict[str, Any] = {"bbox_to_anchor": corner, "bbox_transform": made.transSubfigure, "ncols": len(handles)}
     style.key(axes, handles, loc="lower left", borderaxespad=0.0, borderpad=0.0, **where)
 
 
@@ -242,7 +246,11 @@ HIT = 0.02  # of the largest work in the beat: fainter impacts have no mark
 
 
 def plot_torque(
-    run: Trajectory, window: Sequence[float] | None = None, width: float = style.FULL, beats: list[Beat] | None = None
+    run: Trajectory,
+    window: Sequence[float] | None = None,
+    width: float = style.FULL,
+    beats: list[Beat] | None = None,
+    ax: Axes | None = None,
 ) -> Figure:
     """The torque of all contacts on the balance over its angle, a panel for each of the last two beats of a window.
 
@@ -256,7 +264,7 @@ def plot_torque(
     rows = -(-len(found) // across)
     table = LINE * (2.5 + max(len(one) for one in found))
     step = TORQUE_OVER + TALL + TORQUE_UNDER + table
-    made = style.figure(width, TORQUE_TOP + rows * step)
+    made = style.figure(width, TORQUE_TOP + rows * step, ax=ax)
     name = roles(run.scene).oscillator
     style.heading(made, run.scene.title, f"Torque on {name}, with its swing; triangles: impacts")
     largest = max((float(np.abs(one.torque).max()) for push in found for one in push), default=0.0) or 1.0

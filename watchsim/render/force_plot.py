@@ -98,7 +98,9 @@ class Layout:
     wide: bool  # name and key stand side by side over a panel
 
 
-def plot_forces(run: Trajectory, window: Sequence[float] | None = None, width: float = style.FULL) -> Figure:
+def plot_forces(
+    run: Trajectory, window: Sequence[float] | None = None, width: float = style.FULL, ax: Axes | None = None
+) -> Figure:
     """Normal and friction force by pair of bodies, and the load of every bearing, over time.
 
     window  (from, to) in seconds; default the last two beats without their free oscillation, side by side, or where there are
@@ -123,7 +125,7 @@ def plot_forces(run: Trajectory, window: Sequence[float] | None = None, width: f
     layout = Layout(pairs, pivots, bearings, _units(found), columns, raised=lines > 0, wide=wide >= ROOMY)
     tops = [top + k * (OVER + TALL + BETWEEN) + OVER for k in range(rows)]
     tops[-1] += lines * LINE
-    made = style.figure(width, tops[-1] + TALL + BETWEEN + FOOT)
+    made = style.figure(width, tops[-1] + TALL + BETWEEN + FOOT, ax=ax)
     style.heading(made, run.scene.title, "Forces at contacts, and loads of bearings")
     if names:
         name_key(made, names, style.HEADING)

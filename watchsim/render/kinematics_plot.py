@@ -72,6 +72,7 @@ def plot_kinematics(
     quantities: Sequence[str] = USUAL,
     window: Sequence[float] | None = None,
     width: float = style.FULL,
+    ax: Axes | None = None,
 ) -> Figure:
     """One panel per moving body and quantity over a common time axis; a figure to save as PNG, SVG or PDF.
 
@@ -85,7 +86,7 @@ def plot_kinematics(
     trajectory's own interpolation; at an impact the velocity jumps, and of dense curves every spike is drawn. ValueError naming
     the choices for an unknown body or quantity, or a window that was not recorded.
     """
-    return Kinematics(run, bodies, quantities, width).show(window)
+    return Kinematics(run, bodies, quantities, width, ax).show(window)
 
 
 class Kinematics:
@@ -97,6 +98,7 @@ class Kinematics:
         bodies: Sequence[str] | None = None,
         quantities: Sequence[str] = USUAL,
         width: float = style.FULL,
+        ax: Axes | None = None,
     ) -> None:
         self.run, self._quantities = run, _quantities(quantities)
         self._channels = [channel for body in choose(run, bodies) for channel in channels(run, body)]
@@ -104,7 +106,7 @@ class Kinematics:
             raise ValueError("nothing to plot: no body of this run moves")
         side_by_side = 1 if width < style.NARROW else len(self._quantities)
         rows = len(self._channels) * len(self._quantities) // side_by_side
-        self.figure: Figure = style.figure(width, (PANEL if rows <= MANY else LOW) * rows + FOOT + KEY)
+        self.figure: Figure = style.figure(width, (PANEL if rows <= MANY else LOW) * rows + FOOT + KEY, ax=ax)
         self._panels = self.figure.subplots(rows, side_by_side, sharex=True, squeeze=False)
         style.heading(self.figure, run.scene.title)
         self._own = len(self.figure.texts), len(self.figure.artists)
@@ -243,7 +245,11 @@ STILL = 1e-4  # a range smaller than this part of the value (or of 1 unit) is no
 
 
 def plot_phase_portrait(
-    run: Trajectory, bodies: Sequence[str] | None = None, window: Sequence[float] | None = None, width: float = style.FULL
+    run: Trajectory,
+    bodies: Sequence[str] | None = None,
+    window: Sequence[float] | None = None,
+    width: float = style.FULL,
+    ax: Axes | None = None,
 ) -> Figure:
     """Velocity over place, a panel for each moving body (at most 12 unless named).
 
@@ -262,7 +268,7 @@ def plot_phase_portrait(
     names = names_in(phases)
     step = OVER + TALL + UNDER
     top = TOP + (5.0 if width >= style.NARROW else 8.0)
-    made = style.figure(width, top + rows * step)
+    made = style.figure(width, top + rows * step, ax=ax)
     style.heading(made, run.scene.title, "" if names else f"t = {span[0]:.6g} s to {span[1]:.6g} s")
     if names:
         name_key(made, names, TOP, lines=True)

@@ -101,7 +101,7 @@ def name_key(figure: Figure, names: Iterable[str], top: float, lines: bool = Fal
         tall = 0.7 if lines else 0.7 * row
         colour = strong(name) if lines else PHASES.get(name, ELSE)
         place, size = (x / wide, 1.0 - (y + 0.5 * tall) / high), (SWATCH / wide, tall / high)
-        figure.add_artist(Rectangle(place, *size, color=colour, linewidth=0.0, transform=figure.transFigure))
+        figure.add_artist(Rectangle(place, *size, color=colour, linewidth=0.0, transform=figure.transSubfigure))
         figure.text(
             (x + SWATCH + AFTER_SWATCH) / wide, 1.0 - y / high, name, fontsize=style.SMALL, va="center_baseline", color=INK
         )
@@ -132,7 +132,11 @@ MANY = 2  # beats that are drawn one by one
 
 
 def plot_phases(
-    run: Trajectory, window: Sequence[float] | None = None, width: float = style.FULL, beats: list[Beat] | None = None
+    run: Trajectory,
+    window: Sequence[float] | None = None,
+    width: float = style.FULL,
+    beats: list[Beat] | None = None,
+    ax: Axes | None = None,
 ) -> Figure:
     """A figure `width` mm wide: left the whole window (s; default the last oscillation), then its last two beats at large.
 
@@ -147,7 +151,7 @@ def plot_phases(
     rows = 2 * len(names)
     longest = max((len(title(stage)) for beat in beats[-MANY:] for stage in beat.stages if stage.name != "locked"), default=0)
     top = TOP + style.LETTER * style.SMALL * style.POINT * longest
-    made = style.figure(width, top + rows * PANEL + FOOT)
+    made = style.figure(width, top + rows * PANEL + FOOT, ax=ax)
     style.heading(made, run.scene.title, f"t = {span[0]:.4f} s to {span[1]:.4f} s")
     wide = (width - LEFT - RIGHT - (len(columns) - 1) * BETWEEN) / len(columns)
     for c, beat in enumerate(columns):
@@ -223,7 +227,11 @@ class Instant:
 
 
 def plot_timeline(
-    run: Trajectory, window: Sequence[float] | None = None, width: float = style.FULL, beats: list[Beat] | None = None
+    run: Trajectory,
+    window: Sequence[float] | None = None,
+    width: float = style.FULL,
+    beats: list[Beat] | None = None,
+    ax: Axes | None = None,
 ) -> Figure:
     """The last two beats of a window: the mechanism around the lever during each phase, with the contact forces on the lever,
     above the angles of lever and balance in those phases.
@@ -243,7 +251,7 @@ def plot_timeline(
     tall = min(wide * min((box[3] - box[2]) / (box[1] - box[0]), TALLEST), HIGHEST)
     rows = [-(-len(one) // across) for one in instants]
     heights = [TITLE + count * (tall + WORDS) + LEADS + CURVES + TIME for count in rows]
-    made = style.figure(width, style.HEADING + sum(heights))
+    made = style.figure(width, style.HEADING + sum(heights), ax=ax)
     style.heading(made, run.scene.title, f"Amid each phase; arrows: contact forces on the {' and '.join(_pushed_bodies(run))}")
     posed = Posed(run.scene, compile_scene(run.scene))
     drawn, top = iter(arrows), style.HEADING

@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from watchsim.render import style
@@ -21,10 +22,10 @@ ROOM = 0.15  # of the span of the values, within and without
 PANELS = (("rate_s_per_d", "rate (s/d)"), ("amplitude_deg", "amplitude (°)"))
 
 
-def plot_positions(found: Positions, width: float = style.FULL) -> Figure:
+def plot_positions(found: Positions, width: float = style.FULL, ax: Axes | None = None) -> Figure:
     """A dial for the rate and one for the amplitude: for each temperature and winding a curve through the hours that are up
     (linear between them), and a dotted circle where the watch lies."""
-    made = style.figure(width, TALL, layout="constrained")
+    made = style.figure(width, TALL, layout="constrained", ax=ax)
     made.suptitle(style.cut(found.title), x=0.01, ha="left", fontsize=style.TITLE, weight="bold", color=INK)
     for axes, (column, label) in zip(made.subplots(1, 2, subplot_kw={"projection": "polar"}), PANELS, strict=True):
         _dial(axes, found, column, label)

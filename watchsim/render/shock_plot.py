@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
@@ -23,9 +24,9 @@ OUTCOMES = {
 HIDDEN = "#ffffff"
 
 
-def plot_shock_map(found: ShockMap, width: float = style.FULL) -> Figure:
+def plot_shock_map(found: ShockMap, width: float = style.FULL, ax: Axes | None = None) -> Figure:
     """What becomes of the watch, and by how much it is late or early after the blows that it survives. `width` in mm."""
-    made = style.figure(width, TALL, layout="constrained")
+    made = style.figure(width, TALL, layout="constrained", ax=ax)
     title = f"{found.title}: struck as by the hammer of ISO 1413 at {found.speed_m_s:.3g} m/s"
     made.suptitle(style.cut(title), x=0.01, ha="left", fontsize=style.TITLE, weight="bold", color=INK)
     left, right = made.subplots(1, 2, sharey=True)

@@ -33,7 +33,9 @@ GAP = 1.5  # mm between names, and between a name and the line of another
 FINEST, MOST = 96_000.0, 400_000  # samples a second, and in all
 
 
-def plot_sound(run: Trajectory, window: Sequence[float] | None = None, width: float = style.FULL) -> Figure:
+def plot_sound(
+    run: Trajectory, window: Sequence[float] | None = None, width: float = style.FULL, ax: Axes | None = None
+) -> Figure:
     """The sound of a beat as an oscilloscope shows it, each noise named by what met what, over the phases.
 
     Each impact rings as in `watchsim.sound`, as loud as the root of the energy it loses; 1 is the loudest noise shown.
@@ -51,7 +53,7 @@ def plot_sound(run: Trajectory, window: Sequence[float] | None = None, width: fl
         raise ValueError("nothing sounds there, or no impacts were kept")
     names = names_in(cycle.phases, RESTING)
     top, over = style.HEADING + KEY * bool(names), NAMED * LINE + 1.0
-    made = style.figure(width, top + len(spans) * (over + TALL + BETWEEN) + FOOT)
+    made = style.figure(width, top + len(spans) * (over + TALL + BETWEEN) + FOOT, ax=ax)
     style.heading(made, run.scene.title, "Sound of the impacts, each named by what met what")
     if names:
         name_key(made, names, style.HEADING)

@@ -30,7 +30,7 @@ TALL, REST = 46.0, 9.0  # mm, of a panel, and of the title
 FAMILY = len(SERIES)  # curves in one panel at most
 
 
-def plot_sweep(sweep: Sweep, width: float = style.FULL) -> Figure:
+def plot_sweep(sweep: Sweep, width: float = style.FULL, ax: Axes | None = None) -> Figure:
     """A panel for each output over the first key, or over the one with most values; a figure `width` mm wide to save as PNG,
     SVG or PDF.
 
@@ -39,7 +39,7 @@ def plot_sweep(sweep: Sweep, width: float = style.FULL) -> Figure:
     numeric = [axis for axis in sweep.axes if axis.is_numeric]
     if not numeric or len(sweep.axes) > 2:
         raise ValueError("only sweeps over one or two keys with numbers can be drawn")
-    made = style.figure(width, TALL * len(sweep.outputs) + REST, layout="constrained")
+    made = style.figure(width, TALL * len(sweep.outputs) + REST, layout="constrained", ax=ax)
     panels = made.subplots(len(sweep.outputs), 1, sharex=True, squeeze=False)[:, 0]
     made.suptitle(style.cut(sweep.title), x=0.01, ha="left", fontsize=style.TITLE, weight="bold", color=INK)
     # The abscissa belongs to numbers, and to the longer list.
@@ -61,7 +61,7 @@ def plot_sweep(sweep: Sweep, width: float = style.FULL) -> Figure:
     return made
 
 
-def plot_front(better: Better, width: float = style.FULL) -> Figure:
+def plot_front(better: Better, width: float = style.FULL, ax: Axes | None = None) -> Figure:
     """The front of two goals: designs of which none is better in both, the one that was chosen, and the scene as it was.
 
     ValueError where there is no front, or one of more than two goals.
@@ -69,7 +69,7 @@ def plot_front(better: Better, width: float = style.FULL) -> Figure:
     if len(better.goals) != 2 or not better.front:
         raise ValueError("only a front of two goals can be drawn")
     first, second = (one.output for one in better.goals)
-    made = style.figure(width, 2.0 * TALL + REST, layout="constrained")
+    made = style.figure(width, 2.0 * TALL + REST, layout="constrained", ax=ax)
     axes = made.subplots()
     made.suptitle(style.cut(better.title), x=0.01, ha="left", fontsize=style.TITLE, weight="bold", color=INK)
     x, y = (np.array([_of_front(better, one, design) for design in better.front]) for one in (first, second))
@@ -98,10 +98,10 @@ def _either(better: Better, output: Output, k: int) -> float | None:
     return better.values[output.column][k] if knob is None else to(better.keys[knob.key][k], knob.unit)
 
 
-def plot_fit(found: Fit, width: float = style.FULL) -> Figure:
+def plot_fit(found: Fit, width: float = style.FULL, ax: Axes | None = None) -> Figure:
     """What was measured and what the fitted scene gives, and below it the difference, for each kind of reading."""
     measured = found.measured
-    made = style.figure(width, 1.3 * TALL * len(measured.columns) + REST, layout="constrained")
+    made = style.figure(width, 1.3 * TALL * len(measured.columns) + REST, layout="constrained", ax=ax)
     panels = made.subplots(2 * len(measured.columns), 1, sharex=True, height_ratios=[2, 1] * len(measured.columns))
     about = f"{found.title}, fitted to {measured.name}"
     made.suptitle(style.cut(about), x=0.01, ha="left", fontsize=style.TITLE, weight="bold", color=INK)
@@ -200,7 +200,7 @@ LEAST = 1e-4  # of the longest bar: shorter ones are none
 NUMBERED = 1e-4  # of the longest bar: shorter ones have no number beside them
 
 
-def plot_sensitivity(found: Sensitivity, width: float = style.FULL) -> Figure:
+def plot_sensitivity(found: Sensitivity, width: float = style.FULL, ax: Axes | None = None) -> Figure:
     """A panel of bars for each output, the quantities in one order for all of them; a figure `width` mm wide to save as
     PNG, SVG or PDF. In a column the panels stand one below the other.
 
@@ -209,7 +209,7 @@ def plot_sensitivity(found: Sensitivity, width: float = style.FULL) -> Figure:
     shown = [effect for effect in found.effects if _matters(found, effect)][:MOST_BARS]
     across = len(found.outputs) if width >= style.NARROW else 1
     rows = -(-len(found.outputs) // across)
-    made = style.figure(width, rows * (BAR * max(len(shown), 2) + AROUND_BARS), layout="constrained")
+    made = style.figure(width, rows * (BAR * max(len(shown), 2) + AROUND_BARS), layout="constrained", ax=ax)
     panels = made.subplots(rows, across, sharey=True, squeeze=False).flat
     made.suptitle(f"{style.cut(found.title)}: what matters", x=0.01, ha="left", fontsize=style.TITLE, weight="bold", color=INK)
     names = [f"{in_words(effect.quantity.key)}, +{effect.quantity.change_words}" for effect in shown]

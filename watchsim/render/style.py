@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, cast
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -49,15 +49,36 @@ GOOD, BAD = SERIES[0], SERIES[1]
 MAP = "cividis"  # even in lightness, for every kind of colour vision
 
 
-def figure(width: float = FULL, height: float = COLUMN, layout: Literal["constrained"] | None = None) -> Figure:
-    """An empty figure of this size in mm that can be saved, and that a notebook shows."""
+def figure(
+    width: float = FULL, height: float = COLUMN, layout: Literal["constrained"] | None = None, ax: Axes | None = None
+) -> Figure:
+    """An empty figure of this size in mm that can be saved, and that a notebook shows.
+
+    `ax` are axes of a figure that exists: what is drawn takes their place there, laid out as for that size.
+    """
+    if ax is not None:
+        return _part(ax, width, height)
     made = ShownFigure(figsize=(width * MM, height * MM), dpi=DPI, facecolor="white", layout=layout)
     FigureCanvasAgg(made)
     return made
 
 
+def _part(ax: Axes, width: float, height: float) -> Figure:
+    """The place of some axes as a figure within theirs."""
+    whole, spec = ax.get_figure(), ax.get_subplotspec()
+    assert whole is not None
+    if spec is None:
+        raise ValueError("ax: axes of a grid are needed, as plt.subplots or add_subplot make them")
+    ax.remove()
+    made = whole.add_subfigure(spec, facecolor="none")
+    made.laid_out = width, height  # type: ignore[attr-defined]
+    return cast(Figure, made)
+
+
 def size_mm(figure: Figure) -> tuple[float, float]:
     """Width and height."""
+    if (laid_out := getattr(figure, "laid_out", None)) is not None:
+        return float(laid_out[0]), float(laid_out[1])
     wide, high = (float(inches) / MM for inches in figure.get_size_inches())
     return wide, high
 
@@ -256,7 +277,7 @@ def place_panels(figure: Figure, panels: NDArray[np.object_], above: float) -> N
     `panels`: (rows, columns) axes with y labels and left titles, x labels in the last row only; `above` mm on top are left for
     the heading of the figure.
     """
-    width, height = (inches * INCH for inches in figure.get_size_inches())
+    width, height = (side / POINT for side in size_mm(figure))
     rows, columns = panels.shape
     label = LINE * LABEL
     labels = [max(_label_width(axes.yaxis) for axes in panels[:, j]) for j in range(columns)]

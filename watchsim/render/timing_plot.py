@@ -35,7 +35,9 @@ GUIDES = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0, 200
 STEEP = 0.5  # of the panel's height: what the guide may rise over its width
 
 
-def plot_timing(run: Trajectory, window: Sequence[float] | None = None, width: float = style.FULL) -> Figure:
+def plot_timing(
+    run: Trajectory, window: Sequence[float] | None = None, width: float = style.FULL, ax: Axes | None = None
+) -> Figure:
     """Amplitude of every half swing, rate of every oscillation, and beat error, of whatever swings.
 
     window  (from, to) in seconds; default the whole run
@@ -49,7 +51,7 @@ def plot_timing(run: Trajectory, window: Sequence[float] | None = None, width: f
         known = f"; the first comes at {found.t[0]:.6g} s, the last at {found.t[-1]:.6g} s" if len(found) else ""
         raise ValueError(f"no whole half swing of {found.body} lies from {start:.9g} s to {end:.9g} s{known}")
     step, top = SWINGS_TALL + SWINGS_BETWEEN, style.HEADING + SWINGS_KEY
-    made = style.figure(width, top + 3.0 * step + FOOT)
+    made = style.figure(width, top + 3.0 * step + FOOT, ax=ax)
     style.heading(made, run.scene.title, f"{found.body}, {len(inside)} half swings{_beside(run)}")
     wide, size = width - LEFT - SWINGS_RIGHT, _dot(len(inside))
     panels = [style.panel(made, LEFT, top + k * step, wide, SWINGS_TALL) for k in range(3)]
@@ -80,7 +82,9 @@ def _swings(
     return handles
 
 
-def plot_tape(run: Trajectory, window: Sequence[float] | None = None, width: float = style.FULL) -> Figure:
+def plot_tape(
+    run: Trajectory, window: Sequence[float] | None = None, width: float = style.FULL, ax: Axes | None = None
+) -> Figure:
     """The paper of a timegrapher with a trace for each direction of swing, and below it rate, amplitude and beat error, beat by
     beat; a figure `width` mm wide to save as PNG, SVG or PDF.
 
@@ -94,10 +98,12 @@ def plot_tape(run: Trajectory, window: Sequence[float] | None = None, width: flo
         if last <= first:
             known = f"the first comes at {shown.t[0]:.6g} s, the last at {shown.t[-1]:.6g} s"
             raise ValueError(f"no beat is heard from {start:.9g} s to {end:.9g} s: {known}")
-    return tape_figure(shown, run.scene.title, f"Paper of a timegrapher{_beside(run)}", inside, width)
+    return tape_figure(shown, run.scene.title, f"Paper of a timegrapher{_beside(run)}", inside, width, ax)
 
 
-def tape_figure(shown: Tape, title: str, about: str, inside: slice = slice(None), width: float = style.FULL) -> Figure:
+def tape_figure(
+    shown: Tape, title: str, about: str, inside: slice = slice(None), width: float = style.FULL, ax: Axes | None = None
+) -> Figure:
     """The same of any tape, such as that of a recording, which has no true amplitude."""
     top, step = style.HEADING + TAPE_KEY, TAPE_TALL + TAPE_BETWEEN
     rows = [("rate (s/d)", shown.rate_s_per_d, 1.0), ("amplitude (°)", shown.amplitude_deg, 1.0),
@@ -105,7 +111,7 @@ def tape_figure(shown: Tape, title: str, about: str, inside: slice = slice(None)
     read = shown.shown_deg[inside]
     if not np.isfinite(np.concatenate([shown.amplitude_deg[inside], read])).any():
         del rows[1]
-    made = style.figure(width, top + PAPER_TALL + len(rows) * step + FOOT)
+    made = style.figure(width, top + PAPER_TALL + len(rows) * step + FOOT, ax=ax)
     style.heading(made, title, about)
     wide = width - LEFT - TAPE_RIGHT
     places = [(top, PAPER_TALL), *((top + PAPER_TALL + TAPE_BETWEEN + k * step, TAPE_TALL) for k in range(len(rows)))]

@@ -27,7 +27,7 @@ BINS = 40
 LEAST = 0.01  # of the variance: less has no bar
 
 
-def plot_tolerance(study: ToleranceStudy, width: float = style.FULL) -> Figure:
+def plot_tolerance(study: ToleranceStudy, width: float = style.FULL, ax: Axes | None = None) -> Figure:
     """Histograms with their limits; below each what contributes; then the output with most at stake over the two dimensions
     that matter most, and the map of failures over the two that decide these. A figure `width` mm wide."""
     columns = [name for name in study.outputs if name not in LEFT_OUT]
@@ -38,7 +38,7 @@ def plot_tolerance(study: ToleranceStudy, width: float = style.FULL) -> Figure:
     with_bars = [(name, label) for name, label in names.items() if name in study.contributions]
     across = 3 if width >= style.NARROW else 1
     heights = [TALL] * -(-len(outputs) // across) + [BARS_TALL] * -(-len(with_bars) // across) + [SCATTER_TALL]
-    made = style.figure(width, TITLE_TALL + sum(heights), layout="constrained")
+    made = style.figure(width, TITLE_TALL + sum(heights), layout="constrained", ax=ax)
     made.suptitle(style.cut(study.title), x=0.01, ha="left", fontsize=style.TITLE, weight="bold", color=INK)
     ratios = [sum(one for one in heights if one == tall) for tall in (TALL, BARS_TALL, SCATTER_TALL)]
     parts: Any = made.subfigures(3, 1, height_ratios=ratios)

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
@@ -29,7 +30,9 @@ LEAST_SIDE = 1e-5  # m, of a panel
 MM = 1e3
 
 
-def plot_wear(run: Trajectory, window: Sequence[float] | None = None, width: float = style.FULL) -> Figure:
+def plot_wear(
+    run: Trajectory, window: Sequence[float] | None = None, width: float = style.FULL, ax: Axes | None = None
+) -> Figure:
     """Of the places that wear most (of all teeth the one that does) the true outline, with load times sliding distance in a
     year for each millimetre of it as colour; a corner, which has no length, as a ring, with its sum in words.
 
@@ -42,7 +45,7 @@ def plot_wear(run: Trajectory, window: Sequence[float] | None = None, width: flo
     cells = {side: _along(found, compiled, side) for sides in groups.values() for side in sides}
     most = max((float(own.max()) for own in cells.values() if len(own)), default=0.0) or 1.0
     norm, rows = LogNorm(most / DECADES, most), -(-len(groups) // ACROSS)
-    made = style.figure(width, TALL * rows + FOOT, layout="constrained")
+    made = style.figure(width, TALL * rows + FOOT, layout="constrained", ax=ax)
     made.suptitle(style.cut(f"{run.scene.title}: wear"), x=0.01, ha="left", fontsize=style.TITLE, weight="bold", color=INK)
     panels = made.subplots(rows, min(ACROSS, len(groups)), squeeze=False)
     for axes, (name, sides) in zip(panels.flat, groups.items(), strict=False):
