@@ -13,7 +13,7 @@ from simulation.moving_scenes import box, ground
 
 import watchsim as ws
 from watchsim.scene.errors import SceneError
-from watchsim.scene.forces import Contact, LineSpring, Side, SlipLaw
+from watchsim.scene.forces import Contact, LineSpring, Shock, Side, SlipLaw
 from watchsim.scene.scene import Body, Prescribed, Scene
 from watchsim.simulation.state import EventKind
 from watchsim.simulation.trajectory import Trajectory
@@ -77,7 +77,24 @@ def test_the_period_of_stick_slip_is_the_closed_form() -> None:
 )
 @pytest.mark.parametrize("tolerance", [1e-8, 1e-9])
 def test_the_ledger_closes_at_usual_tolerances_where_slips_end_long_steps(slip: SlipLaw, tolerance: float) -> None:
-    assert ws.simulate(belt(slip, 1.0), tolerance=tolerance).energy["residual_relative"] < 1e-11
+    assert ws.simulate(belt(slip, 1.0), tolerance=tolerance).energy["residual_relative"] < 0.01 * tolerance
+
+
+def test_what_stands_in_a_shaken_case_goes_on_standing() -> None:
+    """All energy is rounding there, and the ledger must not ask for ever shorter steps."""
+    block = Body("block", "free", (0.0, 0.5 * SIDE), mass=MASS, inertia=MASS * SIDE**2 / 6.0, loops=(box(SIDE, SIDE),))
+    scene = Scene(
+        "block in a shaken case",
+        (block, ground(BELT)),
+        contacts=(Contact((Side("block"), Side("ground")), STATIC),),
+        gravity=(0.0, -GRAVITY),
+        shocks=(Shock(0.01, 2e-4, (0.76, -1.36)),),
+        duration=0.05,
+    )
+    run = ws.simulate(scene)
+    assert not run.stop.gave_up
+    assert len(run.t) < 200
+    assert np.abs(run.q[:, :2] - (0.0, 0.5 * SIDE)).max() < 1e-12 * SIDE
 
 
 def test_time_stepping_slips_as_long_to_its_order() -> None:

@@ -436,6 +436,9 @@ def _imbalance(model, options, h, greatest, smooth):
     drive, damping, friction = smooth.y[2 * n], smooth.y[2 * n + 1], smooth.y[2 * n + 2]
     turned = before + after + abs(drive) + abs(damping) + abs(friction)
     allowed = options.ledger * max(greatest, kinetic_energy(model, smooth.y[n : 2 * n])) + LEDGER_ROUNDING * turned
+    for i in range(n):  # what the tolerance leaves to what stands
+        coordinate = model.coordinates[i]
+        allowed += 0.5 * coordinate.mass * (options.tolerance * coordinate.scale * coordinate.rate) ** 2
     return abs(after - before - drive + damping + friction) / allowed if allowed > 0.0 else 0.0
 
 
@@ -501,7 +504,9 @@ def coupled_step(model, state, options, longest, event_after, smooth):
         h *= factor if error < math.inf else SHRINK
     if not short:
         proposed = h * (min(1.0, factor) if shrunk else factor)
-        if not shrunk:  # a step cut short says nothing against a longer next one
+        if h <= least:  # rounding of the ledger says nothing against a longer one either
+            proposed = max(proposed, least / LEAST_FOR_LEDGER)
+        elif not shrunk:  # a step cut short says nothing against a longer next one
             proposed = max(proposed, min(state.clock.step, h * GROW))
         state.clock.step = min(longest_step(options, state.clock.time), proposed)
     bound_accelerations(step, len(model.coordinates))
