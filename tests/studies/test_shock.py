@@ -48,6 +48,17 @@ def test_without_a_guard_pin_the_lever_goes_over(scene: Scene) -> None:
     assert found.lost_s is None and found.recovery_s is None
 
 
+def test_the_blow_meets_a_watch_that_has_settled(scene: Scene) -> None:
+    """The rate without the blow is that of the limit cycle, and so is its amplitude, from the first second on."""
+    cycle, beside = ws.steady(scene), unstruck(scene, 2.0)
+    late = beside.found.amplitude_deg[beside.found.t > 1.0]
+    assert np.abs(late - cycle.amplitude_deg).max() < 0.05
+    found = struck(beside, 0.0, 4.43, 0.25)[0]
+    assert found.verdict == "ticks"
+    assert found.rate_without_s_per_d == pytest.approx(cycle.rate_s_per_d, abs=0.05)
+    assert found.rate_s_per_d == pytest.approx(cycle.rate_s_per_d, abs=1.0)
+
+
 def test_a_blow_too_soft_to_move_the_lever_changes_nothing(scene: Scene) -> None:
     """Draw holds it: the passages are the same to rounding of the tolerance."""
     found = ws.shock(scene, 0.0, 1e-6, 0.25, after=1.0)

@@ -1,7 +1,8 @@
 """What does a blow do to the watch: does it go on, how long until it ticks as before, and how much time is lost?
 
-The case is struck in the first oscillation after `SETTLING`, at a phase from a passage through rest on, and the run is held
-against one of the same watch that is not struck. The blow is that of ISO 1413, whose hammer of 4.43 m/s comes to half a sine of
+The watch begins with the swing of its limit cycle, where its oscillator begins at a turning point. The case is struck in the
+first oscillation after `SETTLING`, at a phase from a passage through rest on, and the run is held against one of the same watch
+that is not struck. The blow is that of ISO 1413, whose hammer of 4.43 m/s comes to half a sine of
 3100 g over 0.35 ms; other speeds scale its height.
 """
 
@@ -28,6 +29,7 @@ from watchsim.scene.scene import EVERYTHING, Scene
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.state import EventKind, Stop
 from watchsim.simulation.trajectory import Array, Trajectory
+from watchsim.studies.steady import steady
 
 HAMMER, HEIGHT, LASTS = 4.43, 3100.0 * G, 0.35e-3  # m/s, m/s², s: ISO 1413
 SETTLING = 1.0  # s before the blow
@@ -54,6 +56,7 @@ class Blow:
     amplitude_change_deg  the largest difference of an amplitude from that without the blow
     recovery_s     from the blow until all amplitudes are within 1 % of those without it; None if they are not by the end
     lost_s         by how much the watch is late at the end; None where it does not tick as often as without the blow
+    rate_s_per_d, rate_without_s_per_d  over the second half of what is looked at, with and without the blow
     """
 
     direction_deg: float
@@ -67,6 +70,8 @@ class Blow:
     amplitude_change_deg: float | None
     recovery_s: float | None
     lost_s: float | None
+    rate_s_per_d: float | None
+    rate_without_s_per_d: float | None
 
     @property
     def harmless(self) -> bool:
@@ -108,12 +113,34 @@ def unstruck(scene: Scene, after: float = AFTER) -> Unstruck:
         raise SceneError([Fault("bodies", FELT_BY_NOTHING, place="shock")])
     if scene.shocks:
         raise SceneError([Fault("shocks", "the scene has blows of its own: leave them out", place="shock")])
+    scene = _on_its_cycle(scene, parts)
     run = simulate(replace(scene, record=EVERYTHING), SETTLING + after + 1.0)
     found = beats(run) if parts.oscillator is not None else None
     if found is None or np.count_nonzero(found.t >= SETTLING) < 4:
         why = "nothing swings after the first second: a blow is held against a watch that goes"
         raise SceneError([Fault("bodies", why, place="shock")])
-    return Unstruck(scene, run, found, parts, after, 0.5 * (scene.lift_angle or math.radians(60.0)))
+    return Unstruck(scene, run, found, parts, after, _outside(scene))
+
+
+def _outside(scene: Scene) -> float:
+    return 0.5 * (scene.lift_angle or math.radians(60.0))
+
+
+def _on_its_cycle(scene: Scene, parts: Roles) -> Scene:
+    """The scene; an oscillator that begins at a turning point beyond the lift is let go where the limit cycle turns."""
+    if parts.oscillator is None or parts.lever is None:
+        return scene
+    body, rest = scene.body(parts.oscillator), _rest(scene, parts)
+    if body.motion != "pivot" or any(body.velocity) or not abs(body.angle - rest) > _outside(scene):
+        return scene
+    try:
+        cycle = steady(scene, brief=True)
+    except SceneError:  # nothing keeps it going
+        return scene
+    if cycle.amplitude_deg is None:
+        return scene
+    turned = replace(body, angle=rest + math.copysign(math.radians(cycle.amplitude_deg), body.angle - rest))
+    return replace(scene, bodies=tuple(turned if one is body else one for one in scene.bodies))
 
 
 def struck(beside: Unstruck, direction: float, speed: float, phase: float) -> tuple[Blow, Trajectory]:
@@ -143,19 +170,28 @@ def struck(beside: Unstruck, direction: float, speed: float, phase: float) -> tu
         float(change[np.argmax(np.abs(change))]) if count else None,
         max(recovered, 0.0) if goes and recovered is not None else None,
         float(found.t[count - 1] - beside.found.t[count - 1]) if goes else None,
+        _rate(found, at + 0.5 * beside.after, at + beside.after) if goes else None,
+        _rate(beside.found, at + 0.5 * beside.after, at + beside.after),
     ), run
+
+
+def _rate(found: Beats, since: float, until: float) -> float | None:
+    """Of the whole oscillations between those times, s/d."""
+    t = found.t[(found.t >= since) & (found.t <= until)]
+    whole = (len(t) - 1) // 2
+    return 86400.0 * (found.nominal_period * whole / float(t[2 * whole] - t[0]) - 1.0) if whole > 0 else None
 
 
 def _beyond(beside: Unstruck, run: Trajectory, t: Array) -> tuple[Array, Array]:
     """(on which side of the lift the oscillator is at these times, 0 within; the coordinate of the lever)."""
     assert beside.parts.oscillator is not None and beside.parts.lever is not None
     q = run.sample(t)[0]
-    away = q[:, run.slices[beside.parts.oscillator].start] - _rest(beside)
+    away = q[:, run.slices[beside.parts.oscillator].start] - _rest(beside.scene, beside.parts)
     return np.where(np.abs(away) > beside.outside, np.sign(away), 0.0), q[:, run.slices[beside.parts.lever].start]
 
 
-def _rest(beside: Unstruck) -> float:
-    return next((spring.rest for spring in beside.scene.springs if spring.body == beside.parts.oscillator), 0.0)
+def _rest(scene: Scene, parts: Roles) -> float:
+    return next((spring.rest for spring in scene.springs if spring.body == parts.oscillator), 0.0)
 
 
 def _stays_on_its_side(beside: Unstruck, run: Trajectory, at: float) -> bool | None:
@@ -273,5 +309,9 @@ def shock_lines(blows: Sequence[Blow]) -> list[str]:
         lines.append(f"  ticks as before   {ticks}")
         if one.lost_s is not None:
             lines.append(f"  time              {1e3 * abs(one.lost_s):.3f} ms {'lost' if one.lost_s >= 0.0 else 'gained'}")
+        if one.rate_s_per_d is not None and one.rate_without_s_per_d is not None:
+            lines.append(
+                f"  rate              {one.rate_s_per_d:+.2f} s/d, {one.rate_without_s_per_d:+.2f} s/d without the blow"
+            )
         lines.append(f"  verdict           {one.message or one.verdict or 'nothing keeps time'}")
     return lines
