@@ -177,7 +177,7 @@ ROOT_RESOLUTION = 1e-15
 PASSAGE_RESOLUTION = 1e-16
 # tolerances: defect of a step's extension. Its path is off by a fifth of that: in lever scenes by 6 at most, in a step that has
 # grown too fast by 200. Large: contacts close early or late; small: needless steps.
-DEFECT = 30.0
+DEFECT = 10.0
 # tolerances: share of the kinetic energy by which the energy on a step's path may miss the work done on it, where forces go
 # with loads, slips or a case that moves; and rounding of both. Large: a ledger that opens where events cut long steps; small:
 # short steps.

@@ -406,7 +406,7 @@ def test_it_falls_by_whole_teeth(changed: dict[str, str | float]) -> None:
     q, u = run.sample(at_rest)
     assert q[:, 1] == pytest.approx(tooth * np.arange(1, steps + 1), abs=1e-9)
     assert np.abs(u[:, 1]).max() < 1e-9
-    assert run.energy["residual_relative"] < 3e-9  # of a tolerance of 1e-9
+    assert run.energy["residual_relative"] < 1e-9
     assert run.worst_penetration < 1e-9
 
 
