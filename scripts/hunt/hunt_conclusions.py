@@ -44,6 +44,7 @@ LEFT = 1e-2  # of the stated error: what the run may still have to go, by the mu
 SETTLED = 1e-6  # of the amplitude: a run whose means of a turn differ by less has settled
 LONGER = 4.0  # times the longest run of the search: where no cycle was found
 TURNS = 2  # of the wheel, in each mean
+CARRIED = 480  # half swings in each, where gravity turns with a carriage: a minute
 SHOWN = 20.0  # nominal periods of the run whose verdict is judged
 RATE = 400  # samples in a period
 OTHERWISE = {"wall_s", "compile_s", "realtime_factor", "kept", "scene_file", "versions", "counts", "expect"}
@@ -67,6 +68,7 @@ def means(run: Trajectory, size: int) -> np.ndarray:
 def judge_steady(scene: Scene, note: Callable[[str], None]) -> Iterator[str]:
     cycle = ws.steady(scene)
     size = 2 * teeth_of(scene) * TURNS * (15 if cycle.oscillations not in (1, teeth_of(scene)) else 1)
+    size = CARRIED if any(body.on for body in scene.bodies) else size
     if not cycle.found:
         note(f"none: {cycle.verdict}")
         if cycle.verdict in ("ticks", "unsettled", None):

@@ -10,7 +10,7 @@ import bisect
 import dataclasses
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import NamedTuple
@@ -26,7 +26,7 @@ from watchsim.simulation.runner import Run, trajectory_of
 from watchsim.simulation.state import NO_CONTACT, State, Stop, write_state
 from watchsim.simulation.trajectory import Trajectory
 from watchsim.studies.cycle import Cycle, Orbit, Range, measures
-from watchsim.studies.return_map import Return, ReturnMap
+from watchsim.studies.return_map import CAUTION, Return, ReturnMap
 from watchsim.studies.section import Loop, NoSection, Section, SolverGaveUp, first_section
 
 # An ordinary run from where the search for a cycle ended, and the verdict on it. The only place that knows how a run is
@@ -86,6 +86,23 @@ def late_means(run: Trajectory) -> Averages:
     )
 
 
+def less_sure(means: Averages, others: Sequence[Averages]) -> Averages:
+    """The errors of the means and by how much those of other runs of the same motion differ from them."""
+
+    def error(name: str) -> float | None:
+        here, known = getattr(means, name), getattr(means, f"{name}_error")
+        there = [value for other in others if (value := getattr(other, name)) is not None]
+        return None if known is None else known + CAUTION * max((abs(here - value) for value in there), default=0.0)
+
+    return dataclasses.replace(
+        means,
+        amplitude_deg_error=error("amplitude_deg"),
+        period_s_error=error("period_s"),
+        rate_s_per_d_error=error("rate_s_per_d"),
+        beat_error_ms_error=error("beat_error_ms"),
+    )
+
+
 def _to_come(a: float, b: float, c: float) -> float:
     """How far the end of an exponential that has these means in three equal stretches lies from the mean of the last two."""
     first, second = abs(b - a), abs(c - b)
@@ -105,7 +122,8 @@ ROOT = 1e-7  # of the amplitude: more left than that, and it is no cycle but a j
 ALIKE = 1e-5  # of the amplitude: cycles closer to each other are one, and oscillations that differ by less are alike
 BESIDE = 1e-4  # of the amplitude: where the search begins for two that have split off from an unstable one
 DOUBLINGS = 18  # of the number of oscillations that are followed along the samples
-HERE = 0.005  # of the amplitude: what ends so near to a stable cycle goes there
+CLOSER = 256  # samples from one before to one behind, where the map jumps between two
+HERE = 2e-4  # of the amplitude: what ends so near to a stable cycle goes there
 STEP = 1e-3  # of the amplitude, for a slope
 
 Oscillate = Callable[[float], Return]
@@ -194,6 +212,9 @@ class Survey:
         for oscillations in (1, 2):
             grid = [(one.amplitude, self._gain(one.amplitude, oscillations)) for one in self._samples()]
             brackets = [(low[0], high[0]) for low, high in pairwise(grid) if low[1] * high[1] < 0.0 or low[1] == 0.0]
+            for low, high in list(brackets):
+                if self._root(low, high, oscillations) is None:  # a jump: beside it there may be cycles all the same
+                    brackets += self._within(low / RATIO, high * RATIO, oscillations)
             if oscillations == 2:
                 brackets += [b for one in found if (one.multiplier or 0.0) < -1.0 for b in self._beside(one.amplitudes[0])]
             for low, high in brackets:
@@ -204,6 +225,11 @@ class Survey:
                 if oscillations == 1 or np.ptp(cycle.amplitudes) > ALIKE * amplitude:
                     found.append(cycle)
         return tuple(sorted(found))
+
+    def _within(self, low: float, high: float, oscillations: int) -> list[tuple[float, float]]:
+        """Between which closer samples the gain changes its sign."""
+        grid = [(one, self._gain(float(one), oscillations)) for one in np.linspace(low, high, CLOSER + 1)]
+        return [(float(a[0]), float(b[0])) for a, b in pairwise(grid) if a[1] * b[1] < 0.0]
 
     def _is_of(self, cycle: Found, amplitude: float) -> bool:
         return any(abs(one - amplitude) <= ALIKE * amplitude for one in cycle.amplitudes)

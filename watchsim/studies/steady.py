@@ -21,7 +21,7 @@ from watchsim.scene.scene import Scene
 from watchsim.scene.toml import key_lines
 from watchsim.simulation.state import State, Stop
 from watchsim.simulation.systems import systems_of
-from watchsim.studies.all_cycles import Survey, Swings, judged, late_means, run_from, with_all_cycles
+from watchsim.studies.all_cycles import Survey, Swings, judged, late_means, less_sure, run_from, with_all_cycles
 from watchsim.studies.attractor import Led, attractor, moved_on
 from watchsim.studies.cycle import Cycle
 from watchsim.studies.return_map import (
@@ -188,8 +188,7 @@ def _shot(led: Led, brief: bool, state: State | None) -> Cycle:
     loop, parts = oscillate.loop, oscillate.parts
     if brief and isinstance(found, Fixed) and abs(found.slope) < 1.0:
         return _cycle(loop, parts, glanced(oscillate, found))
-    exact_to = (max(FINER * loop.tolerance, FINEST_TOLERANCE), min(COARSER * loop.tolerance, COARSEST_TOLERANCE))
-    others = tuple(Loop(loop.scene, tolerance, like=loop) for tolerance in exact_to)
+    others = _otherwise(loop)
     if isinstance(found, Lost):
         again = _after_several(oscillate, found.amplitude, others) if found.trouble == UNSETTLED else None
         return again or _by_run(loop, parts, NO_REPEAT, led.time + AFTERWARDS * parts.period, state)
@@ -200,6 +199,12 @@ def _shot(led: Led, brief: bool, state: State | None) -> Cycle:
     if exact.multiplier is None or not abs(exact.multiplier) < 1.0:
         return _after_several(oscillate, (1.0 + ASIDE) * found.amplitude, others) or _unstable(loop, parts, exact)
     return _cycle(loop, parts, exact)
+
+
+def _otherwise(loop: Loop) -> tuple[Loop, ...]:
+    """The same with a solver that is more exact, and with one that is less so."""
+    exact_to = (max(FINER * loop.tolerance, FINEST_TOLERANCE), min(COARSER * loop.tolerance, COARSEST_TOLERANCE))
+    return tuple(Loop(loop.scene, tolerance, like=loop) for tolerance in exact_to)
 
 
 def _closed(oscillate: ReturnMap, found: Fixed, others: Sequence[Loop]) -> Polished | Return:
@@ -316,6 +321,10 @@ def _by_run(loop: Loop, parts: Parts, why: str, duration: float | None = None, s
         if settled or run.stop != Stop.DURATION or duration >= MOST * parts.period:
             break
         duration = min(LONGER * duration, MOST * parts.period)
+    if settled:
+        others = _otherwise(loop)
+        means = less_sure(means, [late_means(run_from(other, state, duration)) for other in others])
+        loop.simulated += sum(other.simulated for other in others)
     return Cycle(
         found=settled,
         verdict=(TICKS if parts.wheel >= 0 else None) if settled else UNSETTLED,
