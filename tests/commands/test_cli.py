@@ -77,6 +77,19 @@ def test_inspect_draws_no_picture_of_what_it_cannot_read(tmp_path: Path, capsys:
     assert "there is no such file" in capsys.readouterr().out and not (tmp_path / "lost.png").exists()
 
 
+def test_a_dimension_without_its_table_and_a_file_in_place_of_a_folder_are_put_right(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    lever = str(ROOT / "profiles/swiss_lever")
+    assert main(["new", "geneva", "-o", str(tmp_path / "a")]) == 0
+    for words, said in (
+        (["run", str(tmp_path / "a"), "--set", "slots=5"], 'Did you mean "design.slots"?'),
+        (["export", lever, "-o", str(tmp_path / "all.dxf")], "a folder is needed"),
+    ):
+        assert main(words) == 2
+        assert said in capsys.readouterr().err and not (tmp_path / "all.dxf").exists()
+
+
 def test_check_counts_pairs_and_knows_the_frequency(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["check", str(LEVER), "--json"]) == 0
     seen = json.loads(capsys.readouterr().out)

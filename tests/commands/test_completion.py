@@ -40,6 +40,6 @@ def test_bash_completes(words, found, tmp_path, capsys):
 
 
 @pytest.mark.parametrize("shell", SHELLS)
-def test_each_shell_has_a_script_with_paths(shell, capsys):
-    assert main(["schema", "--completion", shell]) == 0
-    assert "watchsim schema --paths" in capsys.readouterr().out
+def test_each_shell_has_a_script_with_paths_with_and_without_the_command(shell, capsys):
+    assert [main([*words, "--completion", shell]) for words in (["schema"], [])] == [0, 0]
+    assert capsys.readouterr().out.count(" schema --paths") == 2

@@ -61,6 +61,10 @@ def run(args: argparse.Namespace) -> int:
     scene = load_scene(args.scene, overlap=False)
     bodies = _chosen(scene, parse_names(args.bodies))
     folder = Path(args.output) if args.output else Path("export") / _name(scene)
+    if folder.suffix[1:].lower() in FORMATS:
+        raise InputError(
+            f"-o {folder}: a folder is needed, for a file of each body. --format {folder.suffix[1:]} writes these only."
+        )
     secured_folder(folder, "exported files", default=not args.output)
     replaced = _check_folder(folder.absolute(), args.force)
     motion = _motion(args, formats)

@@ -171,8 +171,9 @@ def start_from_drawings(names: Sequence[str], output: str | None, as_json: bool,
     except NothingToPropose as error:
         raise InputError(f"{error}.") from error
     names = write_start(folder, dict(found.files))
-    announce_compile()
-    found = replace(found, doubts=(*found.doubts, *trial(found.files)))
+    if found.meets:
+        announce_compile()
+        found = replace(found, doubts=(*found.doubts, *trial(found.files)))
     if as_json:
         print_json({**as_mapping(found, folder), "files": names})
         return

@@ -261,6 +261,7 @@ class Proposal:
     contacts: tuple[tuple[str, str], ...]
     left_out: tuple[str, ...]
     doubts: tuple[str, ...] = ()
+    meets: bool = True  # off where no two parts of the drawings can meet, so that there is nothing to try
 
 
 def propose(paths: Sequence[Path]) -> Proposal:
@@ -295,8 +296,9 @@ def propose(paths: Sequence[Path]) -> Proposal:
         kept = [facing for k, facing in enumerate(plan.facings) if k not in wrong]
         gone = [(facing, "they overlap at the start") for k, facing in enumerate(plan.facings) if k in wrong]
         plan = replace(plan, facings=kept, others=[*plan.others, *gone], guesses=[])
+    meets = any(not facing.by_name_alone for facing in plan.facings)
     sides = tuple((plan.side(*facing.sides[0]), plan.side(*facing.sides[1])) for facing in plan.facings)
-    return Proposal(files, tuple(plan.guesses), tuple(roles), sides, tuple(left_out), tuple(plan.doubts))
+    return Proposal(files, tuple(plan.guesses), tuple(roles), sides, tuple(left_out), tuple(plan.doubts), meets)
 
 
 def _pieces(sources: Sequence[Source]) -> tuple[list[Piece], list[str]]:

@@ -53,6 +53,7 @@ def _wrong(run: Trajectory) -> Iterator[str]:
         yield f"{tried} it keeps no time: {found['timing_message']}"
     if not found["impacts"] and len(run.scene.bodies) > 1:
         yield f"{tried} nothing strikes anything: no part drives another one"
+        return
     still = [
         body.name for body in run.scene.bodies if body.name in run.slices and np.ptp(run.q[:, run.slices[body.name]]) < STILL
     ]

@@ -165,8 +165,11 @@ def with_design(written: Written, faults: Faults) -> tuple[dict[str, Any], Made]
     faults.raise_any()
     drawn = _drawn(design.name, values)
     mapping = merged(drawn.scene, {key: value for key, value in written.mapping.items() if key != DESIGN})
+    names = [one.name for one in design.dimensions]
     for key, value in written.changes.items():
-        if not _of_design(key):
+        if key in names:
+            faults.add(key, f'unknown key. Did you mean "{DESIGN}.{key}"?', shown(value))
+        elif not _of_design(key):
             assign(mapping, key, value, faults)
     mapping[DESIGN] = {"of": design.name, **{one.name: one.shown(getattr(values, one.name)) for one in design.dimensions}}
     return mapping, drawn.sheets
