@@ -277,7 +277,7 @@ PLOTS = (
     Exhibit(
         "torque.png",
         "Torque on the balance",
-        "The moment of all contact forces on the balance over its angle, positive with its swing: below zero the balance unlocks, above it is driven. An area is the work of the forces; on it stands what the phase gives in all, with the impacts, the number of `phases.csv`. The table has both parts. They are worked out twice: from contact forces and jumps here, from the books of the balance there.",
+        "The moment of all contact forces on the balance over its angle, positive with its swing: below zero the balance unlocks, above it is driven. An area is the work of the forces; on it stands what the phase gives in all, with the impacts, the number of `phases.csv`. The table has both parts. They are worked out twice: from contact forces and jumps here, from the energy balance of each phase there.",
         "watchsim plot swiss --kind torque -o torque.png",
         "",
     ),
@@ -337,6 +337,8 @@ HEAD = f"""# Plots
 SVG or PDF (`--format svg,pdf`, or the ending of `-o`). In Python each is a function that returns a matplotlib figure:
 `ws.plot_kinematics`, `plot_phases`, `plot_timeline`, `plot_torque`, `plot_forces`, `plot_phase_portrait`, `plot_energy`, `plot_sound`, `plot_timing`, `plot_tape`, `plot_wear`; of studies
 `plot_sweep` and `plot_sensitivity` ([studies](studies.md)). A notebook shows a figure that stands on the last line of a cell.
+`ax=` puts a plot in the place of some axes of a figure of yours (`plt.subplots(1, 2, figsize=(14, 6))`), laid out as for its `width`; what is returned is
+then that part of your figure.
 
 A figure is as wide as it will be printed: 170 mm for a page, `--width "85 mm"` (`width=85`) for a column, letters of 6 pt or more in both. Colours can
 be told apart with every kind of colour vision, and no colour stands alone: names, dashes, marks or hatching go with it. `--dark` (`watchsim.render.palette.dark`) gives any of them dark ground. The same style draws all pictures

@@ -11,7 +11,7 @@ from typing import Any
 from watchsim import stopping
 from watchsim.commands.console import FINE, MISSED, announce_compile
 
-HELP = "the incline check and a ticking Swiss lever: numbers, plots, MP4 and GIF"
+HELP = "the incline check and a ticking Swiss lever: numbers, plots, MP4, GIF and a page"
 DURATION = 10.0
 DEFAULT, PICTURE = "results/demo", "incline.png"
 
@@ -52,9 +52,10 @@ def run(args: argparse.Namespace) -> int:
     goal = goal_of(scene, folder, args.force)
     with stopping.keeping():
         trajectory, lines, panels = simulate_with_progress(scene, DURATION, None, folder, plotted=True)
-        summary = write(trajectory, goal, Extras(movie=True, gif=True), ["--duration"], lines, panels)
+        summary = write(trajectory, goal, Extras(movie=True, gif=True, report=True), ["--duration"], lines, panels)
     print(f"   {_ticking(summary)}")
-    print(f"   Plots, movie.mp4, movie.gif and all numbers (report.txt): {args.output}/swiss_lever")
+    print(f"   Open {folder / 'report.html'}: motion, plots and numbers on one page.")
+    print(f"   Beside it: plots, movie.mp4, movie.gif, and all numbers (report.txt) in {folder}")
     if args.details:
         print(summary_text(trajectory, {**summary, "expect": []}), flush=True)
     print(f"Done in {time.monotonic() - start:.0f} s.")
