@@ -110,6 +110,10 @@ COORDINATE = np.dtype(
         ("loaded", "i8"),  # 1: friction of the bearing goes with its load, see BEARING
         ("stiffness", "f8"),
         ("cubic", "f8"),  # of the spring: force by the cube of the way from rest, N·m/rad³ or N/m³
+        ("pinned", "f8"),  # stiffness that the spring has more beyond its curb pins
+        ("pin_low", "f8"),  # ways from rest at which the coil touches either pin
+        ("pin_high", "f8"),
+        ("bent", "i8"),  # 1: `cubic` or `pinned` is not zero
         ("rest", "f8"),
         ("level", "f8"),  # where it stands in balance: passages of it are events
         ("watched", "i8"),  # 1: its turning points and passages are events

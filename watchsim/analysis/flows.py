@@ -166,6 +166,7 @@ def flows(run: Trajectory, compiled: Compiled, rows: slice = slice(None)) -> Flo
     hung = np.flatnonzero((c.weight_x != 0.0) | (c.weight_y != 0.0))  # what the weight of turning bodies has done
     own[:, hung] -= np.asarray(c.weight_y)[hung] * np.sin(q[:, hung]) + np.asarray(c.weight_x)[hung] * np.cos(q[:, hung])
     own += 0.25 * np.asarray(c.cubic) * way**4
+    own += 0.5 * np.asarray(c.pinned) * (way - np.clip(way, c.pin_low, c.pin_high)) ** 2
     own[:, np.asarray(c.driven) != 0] = 0.0  # a prescribed motion holds no energy that counts
     stored = own.sum(axis=1)
     for joint in model.joints:

@@ -256,17 +256,19 @@ def driving_force(model, i, q):
 
 
 @kernel
-def cubic_force(coordinate, q):
-    """The part of a spring's force that goes with the cube of the way from rest."""
+def bent_force(coordinate, q):
+    """The part of a spring's force that goes with the cube of the way from rest, and what curb pins add beyond them."""
     way = q - coordinate.rest
-    return -coordinate.cubic * way * way * way
+    beyond = way - min(max(way, coordinate.pin_low), coordinate.pin_high)
+    return -coordinate.cubic * way * way * way - coordinate.pinned * beyond
 
 
 @kernel
-def cubic_energy(coordinate, q):
+def bent_energy(coordinate, q):
     """What that part stores, J."""
     way = q - coordinate.rest
-    return 0.25 * coordinate.cubic * way * way * way * way
+    beyond = way - min(max(way, coordinate.pin_low), coordinate.pin_high)
+    return 0.25 * coordinate.cubic * way * way * way * way + 0.5 * coordinate.pinned * beyond * beyond
 
 
 damping_rate = kernel(resistance)
@@ -334,8 +336,8 @@ def forces(model, t, q, u, out_h):
         out_h[i] = (
             driving_force(model, i, q[i]) - coordinate.stiffness * (q[i] - coordinate.rest) + damping_force(model, i, u[i])
         )
-        if coordinate.cubic != 0.0:
-            out_h[i] += cubic_force(coordinate, q[i])
+        if coordinate.bent:
+            out_h[i] += bent_force(coordinate, q[i])
     for j in range(len(model.joints)):
         joint = model.joints[j]
         torque = joint_force(joint, q, u)
@@ -411,8 +413,8 @@ def stored_energy(model, q, u):
             continue
         way = q[i] - coordinate.rest
         energy += 0.5 * (coordinate.mass * u[i] * u[i] + coordinate.stiffness * way * way)
-        if coordinate.cubic != 0.0:
-            energy += cubic_energy(coordinate, q[i])
+        if coordinate.bent:
+            energy += bent_energy(coordinate, q[i])
     return energy + joint_energy(model, q) + line_spring_energy(model, q)
 
 

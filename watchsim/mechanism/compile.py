@@ -148,16 +148,7 @@ def forced_coordinates(
                 rows[slices[body.name]].mass = masses[i]
     targets = _Targets(scene, swinging, riding, bound, slices, rows)
     _weigh_geared(scene, weighed, targets)
-    for spring in scene.springs:
-        row = targets.row(spring.body, spring.against)
-        # Several springs on one coordinate add up to one: stiffnesses add, rests average.
-        stiffness = spring.stiffness * targets.ratio(spring.body) ** 2
-        total = row.stiffness + stiffness
-        rest = targets.place(spring.body, spring.rest, spring.against)
-        row.rest = (row.stiffness * row.rest + stiffness * rest) / total
-        row.stiffness = total
-        if spring.cubic:
-            row.cubic = spring.cubic * targets.ratio(spring.body) ** 4
+    _spring_up(scene, targets)
     stiffest = _watch(scene, targets)
     for damping in scene.damping:
         row, ratio = targets.row(damping.body, damping.against), abs(targets.ratio(damping.body))
@@ -178,13 +169,18 @@ def forced_coordinates(
     jointed = {*joints.coordinate.tolist(), *joints.on.tolist(), *(k for k, _ in held)}
     for i, row in enumerate(rows):
         bent = any(row[law] != 0.0 for law, power in DAMPING_LAWS.items() if power != 1)
-        bent = bent or row.cubic != 0.0
+        bent = bent or row.bent != 0
         bent = bent or any(one.coordinate == i and (one.moment_x or one.moment_y) for one in bearings)
         row.linear = not bent and row.weight_x == 0.0 and row.weight_y == 0.0 and i not in tabled | jointed
     inverse = np.where(rows.driven != 0, 0.0, 1.0 / rows.mass)
     light = 1.0 / (inverse[joints.coordinate] + inverse[joints.on])
     swings = np.sqrt(
-        [*(rows.stiffness / rows.mass), stiffest, *(joints.stiffness / light), *(k / rows.mass[i] for i, k in held)]
+        [
+            *((rows.stiffness + rows.pinned) / rows.mass),
+            stiffest,
+            *(joints.stiffness / light),
+            *(k / rows.mass[i] for i, k in held),
+        ]
     )
     fastest = float(np.max(swings, initial=0.0))
     pull = np.abs(rows.force) + np.hypot(rows.weight_x, rows.weight_y)
@@ -196,6 +192,25 @@ def forced_coordinates(
     # Without a spring nothing comes back by itself: what forces do takes longer than their rate says.
     slowest = float(np.min(swings[swings > 0.0])) if fastest else pushed / UNSPRUNG or thrown or 1.0
     return Forced((rows, joints, lines, bearings, tables, knots), fastest, max(slowest, SLOWEST_RATE * fastest))
+
+
+def _spring_up(scene: Scene, targets: _Targets) -> None:
+    """Springs on the coordinates and joints."""
+    for spring in scene.springs:
+        row = targets.row(spring.body, spring.against)
+        # Several springs on one coordinate add up to one: stiffnesses add, rests average.
+        stiffness = spring.stiffness * targets.ratio(spring.body) ** 2
+        total = row.stiffness + stiffness
+        rest = targets.place(spring.body, spring.rest, spring.against)
+        row.rest = (row.stiffness * row.rest + stiffness * rest) / total
+        row.stiffness = total
+        if spring.cubic:
+            row.cubic = spring.cubic * targets.ratio(spring.body) ** 4
+        if spring.curb is not None:
+            row.pinned = spring.stiffness * spring.curb.share / (1.0 - spring.curb.share)
+            row.pin_low, row.pin_high = spring.curb.offset - spring.curb.gap, spring.curb.offset + spring.curb.gap
+        if spring.cubic or spring.curb is not None:
+            row.bent = 1
 
 
 def _bearings(scene: Scene, weighed: tuple[Weighed, ...], targets: _Targets) -> Records:

@@ -148,6 +148,8 @@ def _spring(scene: Scene, spring: Spring) -> str:
     beats = (
         f" = {show(hertz, 'vph')}" if timed else " while they touch nothing" if spring.against else " while it touches nothing"
     )
+    if spring.curb is not None:
+        stiffness += f", more by {100.0 * spring.curb.share / (1.0 - spring.curb.share):.4g} % beyond its curb pins"
     if spring.cubic:
         stiffness += f" and {metric(spring.cubic, 'N/m³' if linear else 'N·m/rad³')}"
     return f"{stiffness}, {show(hertz, 'Hz')}{beats}, at rest at {rest}{_stop(spring, linear)}"

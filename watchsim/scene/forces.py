@@ -16,6 +16,19 @@ from watchsim.geometry.primitives import Point
 
 
 @dataclass(frozen=True, slots=True)
+class Curb:
+    """Two pins between which a hairspring plays: `share` of its length lies beyond them, towards the stud.
+
+    The coil touches them where the body is `gap` (rad) to either side of `offset` (rad) from rest. Beyond, only what lies
+    before the pins is wound further: its stiffness is that of the whole over 1 - share.
+    """
+
+    share: float
+    gap: float
+    offset: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
 class Spring:
     """A spring: -stiffness (q - rest) - cubic (q - rest)³, N·m/rad or N/m, N·m/rad³ or N/m³.
 
@@ -32,6 +45,7 @@ class Spring:
     stop: float | None = None
     restitution: float = 0.0
     cubic: float = 0.0
+    curb: Curb | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -249,6 +249,15 @@ LEAF: Keys = {
         "of its force, on a pivoted body", limits=_above_zero("it is the distance of the leaf's force from the pivot")
     ),
 }
+CURB: Keys = {
+    "share": _number(
+        "of the strip's length that lies between pins and stud: the setting of the index",
+        required=True,
+        limits=(Limit(0.0, 1.0, "is a share of the strip's length: from 0, below 1", "high"),),
+    ),
+    "gap": _angle("of the body, from the middle to where the coil touches either pin", required=True, limits=_not_negative()),
+    "offset": _angle("of that middle from rest: the coil leans to one pin"),
+}
 SPRING: Keys = {
     "body": _BODY,
     "frequency": Key(
@@ -265,6 +274,7 @@ SPRING: Keys = {
         instead_of=("frequency", "leaf"),
     ),
     "cubic": Key(units.ROTARY_CUBIC, units.LINEAR_CUBIC, doc="stiffness that grows with the square of the way from rest"),
+    "curb": Key(doc="two pins between which a hairspring plays", inner=CURB, form=TABLE),
     "rest": Key(units.ANGLE, units.LENGTH, doc="where it does not act", instead_of=("preload",)),
     "draw": Key(doc="the hairspring that pictures show", inner=COIL, form=TABLE),
     "against": _AGAINST,

@@ -12,10 +12,11 @@ from watchsim.geometry.hairspring import Coil
 from watchsim.geometry.primitives import Point
 from watchsim.model import DAMPING_LAWS
 from watchsim.scene.errors import Faults
-from watchsim.scene.forces import Bearing, Damping, LineSpring, Spring, Torque
+from watchsim.scene.forces import Bearing, Curb, Damping, LineSpring, Spring, Torque
 from watchsim.scene.keys import (
     BEARING,
     COIL,
+    CURB,
     DAMPING,
     FEWEST_TURNS,
     LEAF,
@@ -62,6 +63,26 @@ def read_coil(table: Table, body: Body | None) -> Coil | None:
         keys.fault("outer", "the stud must stand outside the collet: outer is no more than inner", with_value=True)
     stud = keys.quantity("stud")
     return Coil(inner, outer, turns, stud, width) if len(table.faults.found) == known else None
+
+
+CURB_EXAMPLE = 'curb = { share = 0.03, gap = "20°" }'
+
+
+def read_curb(table: Table, body: Body | None) -> Curb | None:
+    """The pins of a hairspring; None without."""
+    if "curb" not in table:
+        return None
+    if not isinstance(table.mapping["curb"], dict):
+        table.fault("curb", f"a table is needed here, such as {CURB_EXAMPLE}", with_value=True)
+        return None
+    keys = Table(table.mapping["curb"], f"{table.path}.curb", CURB, table.faults)
+    keys.lacks(CURB_EXAMPLE)
+    if body is not None and (body.motion != "pivot" or body.geared is not None):
+        table.fault("curb", f"pins hold a hairspring on a body that turns and is not geared without play, unlike {body.name}")
+    found = Curb(keys.quantity("share", NAN), keys.quantity("gap", NAN), keys.quantity("offset"))
+    if abs(found.offset) > found.gap:
+        keys.fault("offset", "at rest the coil would be bent by a pin: it can be no more than gap", with_value=True)
+    return found
 
 
 # How are leaf springs read: their stiffness from their size, their preload and the stop on which they rest?
@@ -239,12 +260,13 @@ def read_springs(mapping: Mapping[str, Any], bodies: tuple[Body, ...], faults: F
     entries = list(_entries(mapping, "springs", SPRING, bodies, faults))
     holders = [one.body.geared.to if one.body and one.body.geared else one.name for one in entries]
     for entry, holder in zip(entries, holders, strict=True):
-        if "cubic" not in entry.table or entry.body is None:
-            continue
-        if entry.other is not None or entry.body.on is not None:
-            entry.table.fault("cubic", "is for a spring that is fixed in the movement, on a body that nothing carries")
-        elif holders.count(holder) > 1:
-            entry.table.fault("cubic", f"several springs act on {holder} as one, at their common rest: write one")
+        for key in ("cubic", "curb"):
+            if key not in entry.table or entry.body is None:
+                continue
+            if entry.other is not None or entry.body.on is not None:
+                entry.table.fault(key, "is for a spring that is fixed in the movement, on a body that nothing carries")
+            elif holders.count(holder) > 1:
+                entry.table.fault(key, f"several springs act on {holder} as one, at their common rest: write one")
     return tuple(_spring(entry) for entry in entries)
 
 
@@ -347,7 +369,8 @@ def _spring(entry: Entry) -> Spring:
     coil = read_coil(entry.table, entry.body)
     rest = read_rest(entry.table, entry.body, stiffness, entry.other)
     stop = read_stop(entry.table, entry.body, entry.other, rest)
-    return Spring(entry.name, stiffness, rest, frequency, coil, entry.against, *stop, entry.table.quantity("cubic"))
+    cubic, curb = entry.table.quantity("cubic"), read_curb(entry.table, entry.body)
+    return Spring(entry.name, stiffness, rest, frequency, coil, entry.against, *stop, cubic, curb)
 
 
 def _spring_stiffness(entry: Entry) -> float:

@@ -24,8 +24,8 @@ from watchsim.contact.gaps import (
 from watchsim.dynamics.delassus import copy, drive_through_contacts
 from watchsim.dynamics.forces import (
     add_line_springs,
-    cubic_energy,
-    cubic_force,
+    bent_energy,
+    bent_force,
     damping_rate,
     driving_force,
     joint_damping,
@@ -226,8 +226,8 @@ def _free_velocity(model, state, h, work):
         work.mass[i] = coordinate.mass + change
         work.inverse[i] = 1.0 / work.mass[i]
         pull = work.force[i] - coordinate.stiffness * (state.q[i] - coordinate.rest)
-        if coordinate.cubic != 0.0:
-            pull += cubic_force(coordinate, work.q[i])
+        if coordinate.bent:
+            pull += bent_force(coordinate, work.q[i])
         work.free[i] = ((coordinate.mass - change) * work.u[i] + h * pull) * work.inverse[i]
         if coordinate.driven:
             work.inverse[i] = 0.0
@@ -301,8 +301,8 @@ def move(model, state, options, m, h, work, u):
         coordinate = model.coordinates[i]
         mean = 0.5 * (work.u[i] + u[i])
         state.q[i] += h * mean
-        if coordinate.cubic != 0.0:  # taken at the middle: what it does beyond its energy is the method's error
-            state.sums.correction -= h * mean * cubic_force(coordinate, work.q[i]) - cubic_energy(coordinate, work.start[i])
+        if coordinate.bent:  # taken at the middle: what it does beyond its energy is the method's error
+            state.sums.correction -= h * mean * bent_force(coordinate, work.q[i]) - bent_energy(coordinate, work.start[i])
         if not coordinate.driven:
             state.sums.drive += h * mean * work.force[i]
         state.sums.damping += h * work.damping[i] * mean * mean
@@ -325,8 +325,8 @@ def move(model, state, options, m, h, work, u):
         coordinate = model.coordinates[i]
         after = coordinate.stiffness * (state.q[i] - coordinate.rest) ** 2
         state.sums.correction -= 0.5 * (after - work.wound[i])
-        if coordinate.cubic != 0.0:
-            state.sums.correction -= cubic_energy(coordinate, state.q[i])
+        if coordinate.bent:
+            state.sums.correction -= bent_energy(coordinate, state.q[i])
 
 
 @kernel
