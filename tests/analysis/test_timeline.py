@@ -22,6 +22,7 @@ from watchsim.cli import main
 from watchsim.commands.console import BAD_INPUT, FINE
 from watchsim.mechanism.compile import compile_scene
 from watchsim.paths import profiles_dir
+from watchsim.render.energy_plot import pushes
 from watchsim.render.phase_plots import plot_phases
 from watchsim.scene.forces import Damping, Spring, Torque
 from watchsim.scene.load import load
@@ -249,6 +250,20 @@ def test_what_a_torque_on_the_balance_does_is_not_done_by_the_lever() -> None:
         wound = 0.5 * stiffer * ((q[-1, column] - off) ** 2 - (q[0, column] - off) ** 2)
         assert c.energy.to_balance - before.energy.to_balance == pytest.approx(wound, rel=1e-6, abs=1e-16)
         assert c.impulse - before.impulse == pytest.approx(stiffer * far, rel=1e-4, abs=1e-15)
+
+
+@pytest.mark.parametrize("name", ["tourbillon", "graham"])
+def test_carried_and_heavy_oscillators_get_what_the_contacts_give(name):
+    """Work and impulse by the books of motion, spring, weight and damping, against the contact forces and the impacts."""
+    run = simulate(load(profiles_dir() / name / "scene.toml"), **({"duration": 1.4} if name == "tourbillon" else {}))
+    told = shown_beats(run, None, rubbed=False)[-2:]
+    given = [push for found in pushes(run, told) for push in found]
+    most = max(abs(push.stage.energy.to_balance) for push in given)
+    assert most > 0.0
+    for push in given:
+        assert push.forces + push.impacts == pytest.approx(push.stage.energy.to_balance, abs=2e-5 * most)
+        if push.forces == push.impacts == 0.0:
+            assert push.stage.impulse == pytest.approx(0.0, abs=1e-8 * max(abs(one.stage.impulse) for one in given))
 
 
 # Do the books of springs between points close at any instant, with driven bodies at either end?

@@ -141,7 +141,10 @@ class Flows:
     drive   work of torques, forces and tables so far, J
     driven  the same on each coordinate
     damped  what damping and dry bearings of each coordinate have taken so far, J (rows, n)
+    joined  what springs between bodies have given each coordinate so far, less what `damped` counts of theirs, J
     swept   integral of each coordinate over time so far, rad s
+    bent    integral over time of what is neither constant nor linear on each coordinate: weight, cubic springs, drag, dry
+            friction, N·m·s
     """
 
     t: Array
@@ -152,7 +155,9 @@ class Flows:
     drive: Array
     driven: Array
     damped: Array
+    joined: Array
     swept: Array
+    bent: Array
 
 
 def flows(run: Trajectory, compiled: Compiled, rows: slice = slice(None)) -> Flows:
@@ -180,8 +185,10 @@ def flows(run: Trajectory, compiled: Compiled, rows: slice = slice(None)) -> Flo
     step = h[:, None]
     # A constant force works on the way, the integral of the cubics; only what changes on the way needs Gauss's rule.
     driven = _constant_work(model, 0.5 * step * (u[:-1] + u[1:]) + step * step / 12.0 * (a[:-1] - a[1:]))
-    damped = np.zeros_like(driven)
+    damped, joined, bent = (np.zeros_like(driven) for _ in range(3))
     moved, slowed = _changing(model)
+    curved = np.flatnonzero((c.weight_x != 0.0) | (c.weight_y != 0.0) | (c.cubic != 0.0)).tolist()
+    moved = sorted({*moved, *curved})
     if moved or slowed:
         place, speed = _position(step, (q, u, a), moved), _velocity(h, (u, a), sorted({*moved, *slowed}))
         for node, weight in zip(NODES, WEIGHTS, strict=True):
@@ -190,6 +197,9 @@ def flows(run: Trajectory, compiled: Compiled, rows: slice = slice(None)) -> Flo
                 driven += weight * step * _changing_power(model, t[:-1] + node * h, place(node), us)
             if slowed:
                 damped += weight * step * _damping_power(model, us)
+            bent += weight * step * _bent(model, place(node), us, curved)
+            if len(model.joints):
+                joined += weight * step * _joint_power(model, place(node), us)
             if len(model.lines):
                 held, taken = line_spring_power(model, place(node), us)
                 driven += weight * step * held
@@ -202,8 +212,8 @@ def flows(run: Trajectory, compiled: Compiled, rows: slice = slice(None)) -> Flo
     free = _in_flight(model, own, (q, u, a)) & (h > 0.0)[:, None]
     damped = np.where(free, own[:-1] - own[1:] + driven, damped)
     swept = step * (0.5 * (q[:-1] + q[1:]) + step * (0.1 * (u[:-1] - u[1:]) + step * (a[:-1] + a[1:]) / 120.0))
-    driven, damped, swept = (_so_far(values) for values in (driven, damped, swept))
-    return Flows(t, q, u, stored, own, driven.sum(axis=1), driven, damped, swept)
+    driven, damped, joined, swept, bent = (_so_far(values) for values in (driven, damped, joined, swept, bent))
+    return Flows(t, q, u, stored, own, driven.sum(axis=1), driven, damped, joined, swept, bent)
 
 
 def _in_flight(model: Model, own: Array, rows: tuple[Array, Array, Array]) -> NDArray[np.bool_]:
@@ -238,7 +248,7 @@ def _changing(model: Model) -> tuple[list[int], list[int]]:
     """The coordinates on which a force changes with place or time, and those with damping or a joint, whose powers are
     integrated."""
     c = model.coordinates
-    moved = {int(k) for joint in model.joints if c.driven[joint.on] for k in (joint.coordinate, joint.on)}
+    moved = {int(k) for joint in model.joints for k in (joint.coordinate, joint.on)}
     slowed = {int(k) for k in np.flatnonzero(np.any([c[law] != 0.0 for law in ("coulomb", "loaded", *DAMPING_LAWS)], axis=0))}
     for table in model.tables:
         moved |= {int(table.coordinate), *([int(table.on)] if table.on >= 0 else [])}
@@ -327,6 +337,31 @@ def _damping_power(model: Model, u: Row) -> Array:
     for joint in model.joints:
         w = np.abs(u[int(joint.coordinate)] - u[int(joint.on)])
         power[:, joint.coordinate] += w * w * resistance(joint, w)
+    return power
+
+
+def _bent(model: Model, q: Row, u: Row, curved: list[int]) -> Array:
+    """The torques on each coordinate that are neither constant nor linear, N·m (steps, n)."""
+    c = model.coordinates
+    torque = np.zeros((len(next(iter(u.values()))), len(c)))
+    for k, speed in u.items():
+        torque[:, k] -= c.coulomb[k] * np.sign(speed) + c.quadratic[k] * np.abs(speed) * speed
+    for k in curved:
+        torque[:, k] += np.cos(q[k]) * c.weight_y[k] - np.sin(q[k]) * c.weight_x[k] - c.cubic[k] * (q[k] - c.rest[k]) ** 3
+    return torque
+
+
+def _joint_power(model: Model, q: Row, u: Row) -> Array:
+    """What the springs and dampers of joints do on each of their two coordinates, W (steps, n); what is lost in them counts
+    as damping of the first and not here."""
+    power = np.zeros((len(next(iter(u.values()))), len(model.coordinates)))
+    for joint in model.joints:
+        own, on = int(joint.coordinate), int(joint.on)
+        w = u[own] - u[on]
+        slowing = w * resistance(joint, np.abs(w))
+        held = joint.stiffness * (q[own] - q[on] - joint.rest) + slowing
+        power[:, own] += w * slowing - held * u[own]
+        power[:, on] += held * u[on]
     return power
 
 

@@ -223,9 +223,18 @@ def _columns(run: Trajectory, parts: Roles, compiled: Compiled, made: Flows, som
         return np.asarray(values[j] - values[i])
 
     damping = change(made.damped)
-    to_balance = change(made.own[:, balance]) + damping[:, balance] - change(made.driven[:, balance])
-    impulse = c.mass * change(made.u[:, balance]) + c.viscous * change(made.q[:, balance])
-    impulse += c.stiffness * (change(made.swept[:, balance]) - c.rest * change(made.t)) - c.force * change(made.t)
+    given = change(made.driven[:, balance]) + change(made.joined[:, balance])
+    to_balance = change(made.own[:, balance]) + damping[:, balance] - given
+    took = change(made.t)
+    impulse = c.mass * change(made.u[:, balance]) + c.viscous * change(made.q[:, balance]) - c.force * took
+    impulse += c.stiffness * (change(made.swept[:, balance]) - c.rest * took) - change(made.bent[:, balance])
+    for joint in compiled.model.joints:  # the spring of a carried balance, or one between two
+        for side, other, rest in ((joint.coordinate, joint.on, joint.rest), (joint.on, joint.coordinate, -joint.rest)):
+            if side == balance:
+                wound = change(made.swept[:, side] - made.swept[:, other]) - rest * took
+                push = joint.force if side == joint.coordinate else -joint.force
+                impulse += joint.stiffness * wound - push * took
+                impulse += joint.viscous * change(made.q[:, side] - made.q[:, other])
     impacts = impact_losses(run, starts, ends, locked, locking)
     rates_i, rates_j = (compiled.relative(made.u[k], rates=True)[:, columns] for k in (i, j))
     supplied, stored, damped = change(made.drive), change(made.stored), damping.sum(axis=1)

@@ -18,10 +18,10 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 
 from watchsim.analysis.flows import energy_shares
-from watchsim.analysis.forces import forces, just_before
+from watchsim.analysis.forces import absolute, forces, just_before
 from watchsim.analysis.timeline import Beat, Stage, shown_beats
 from watchsim.analysis.timeline import title as phase_title
-from watchsim.mechanism.compile import compile_scene
+from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.render import style
 from watchsim.render.palette import ENERGIES, FAINT, INK
 from watchsim.render.phase_plots import bands, beat_name
@@ -186,14 +186,15 @@ def pushes(run: Trajectory, beats: Sequence[Beat]) -> list[list[Push]]:
     times = [_instants(run, stage.phase.start, stage.phase.end) for own in stages for stage in own]
     whole = torque_on(run, name, np.concatenate(times))
     curves = zip(times, np.split(whole, np.cumsum([len(own) for own in times])[:-1]), strict=True)
-    inertia = float(compile_scene(run.scene).model.coordinates[run.slices[name].start].mass)
-    return [[_push(run, name, inertia, stage, *next(curves)) for stage in own] for own in stages]
+    compiled = compile_scene(run.scene)
+    return [[_push(run, name, compiled, stage, *next(curves)) for stage in own] for own in stages]
 
 
-def _push(run: Trajectory, name: str, inertia: float, stage: Stage, times: Array, torque: Array) -> Push:
+def _push(run: Trajectory, name: str, compiled: Compiled, stage: Stage, times: Array, torque: Array) -> Push:
     angle = run.positions(times, [run.slices[name].start])[:, 0]
-    work = float(np.sum(0.5 * (torque[1:] + torque[:-1]) * np.diff(angle)))
-    struck = _impacts(run, name, inertia, stage)
+    turned = frames(run.scene, run.slices, run.sample(times)[0])[name][:, 2]  # in the movement, whatever carries it
+    work = float(np.sum(0.5 * (torque[1:] + torque[:-1]) * np.diff(turned)))
+    struck = _impacts(run, name, compiled, stage)
     way = 1.0 if angle[-1] >= angle[0] else -1.0
     return Push(stage, angle, torque, work, sum(value for _, value in struck), struck, way)
 
@@ -222,7 +223,7 @@ def torque_on(run: Trajectory, name: str, times: Array) -> Array:
     return total
 
 
-def _impacts(run: Trajectory, name: str, inertia: float, stage: Stage) -> tuple[tuple[float, float], ...]:
+def _impacts(run: Trajectory, name: str, compiled: Compiled, stage: Stage) -> tuple[tuple[float, float], ...]:
     """Angle and work of every jump of the balance's velocity that the timeline counts with this phase."""
     column = run.slices[name].start
     low = np.searchsorted(run.t, stage.phase.start, "right" if stage.name == "run to banking" else "left")
@@ -230,11 +231,10 @@ def _impacts(run: Trajectory, name: str, inertia: float, stage: Stage) -> tuple[
     rows = np.arange(max(int(low), 1), int(high) + 1)
     rows = rows[rows < len(run.t)]
     jumps = rows[(run.t[rows] == run.t[rows - 1]) & (rows - 1 >= low) & (rows < high)]
-    return tuple(
-        (float(run.q[k, column]), 0.5 * inertia * float(run.u[k, column] ** 2 - run.u[k - 1, column] ** 2))
-        for k in jumps.tolist()
-        if run.u[k, column] != run.u[k - 1, column]
-    )
+    inertia = float(compiled.model.coordinates[column].mass)
+    before, after = (absolute(compiled, run.u[k], True)[:, column] for k in (jumps - 1, jumps))
+    works = 0.5 * inertia * (after**2 - before**2)
+    return tuple((float(run.q[k, column]), work) for k, work in zip(jumps.tolist(), works.tolist(), strict=True) if work)
 
 
 TORQUE_TOP, TORQUE_LEFT, TORQUE_RIGHT, TORQUE_OVER, TALL, TORQUE_UNDER = 12.0, 12.0, 3.0, 5.0, 48.0, 11.0  # mm
