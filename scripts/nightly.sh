@@ -42,6 +42,7 @@ step "the pages of these" cat "$scratch"/reports/{long-runs,convergence,ordinary
 
 step "random mechanisms, others every night" \
     python scripts/hunt/hunt_mechanisms.py --seed "$(date +%Y%m%d)" --count 1000 --jobs "$(nproc)"
+step "what is concluded of random oscillators" python scripts/hunt/hunt_conclusions.py --seed "$(date +%Y%m%d)" --count 200
 for signal in KILL INT TERM; do
     step "commands at random moments: $signal" python scripts/fuzz/stops.py --signal "$signal" --count 70
 done

@@ -12,17 +12,19 @@ scale     the same summary in other units of length and time
     python scripts/hunt/hunt_conclusions.py --count 300
     python scripts/hunt/hunt_conclusions.py --only 17 --judge steady
 
-Exit status: 0 all fine, 1 something was wrong.
+Ctrl-C and SIGTERM end it with the table of what was judged so far. Exit status: 0 all fine, 1 something was wrong.
 """
 
 from __future__ import annotations
 
 import argparse
 import math
+import signal
 import sys
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -183,6 +185,15 @@ def judge_scale(scene: Scene, note: Callable[[str], None]) -> Iterator[str]:
 JUDGES = {"steady": judge_steady, "verdict": judge_verdict, "records": judge_records, "scale": judge_scale}
 
 
+def answer_of(name: str, scene: Scene) -> tuple[list[str], list[str]]:
+    """Words for the table, and what is wrong; an exception is wrong, too."""
+    words: list[str] = []
+    try:
+        return words, list(JUDGES[name](scene, words.append))
+    except Exception as error:
+        return words, [f"{name}: crashed, {type(error).__name__}: {error}"]
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seed", type=int, default=1)
@@ -192,22 +203,22 @@ def main() -> int:
     parser.add_argument("--judge", choices=sorted(JUDGES), action="append")
     args = parser.parse_args()
     numbers = [args.only] if args.only is not None else range(args.start, args.start + args.count)
-    begun, seen, wrong = time.perf_counter(), Counter[tuple[str, str]](), 0
-    for number in numbers:
-        scene = mechanism(args.seed, number)
-        for name in args.judge or JUDGES:
-            try:
-                words: list[str] = []
-                reasons = list(JUDGES[name](scene, words.append))
+    begun, seen, wrong, judged = time.perf_counter(), Counter[tuple[str, str]](), 0, 0
+    for ended in (signal.SIGINT, signal.SIGTERM):  # in the background the first one is ignored
+        signal.signal(ended, signal.default_int_handler)
+    with suppress(KeyboardInterrupt):
+        for number in numbers:
+            scene = mechanism(args.seed, number)
+            for name in args.judge or JUDGES:
+                words, reasons = answer_of(name, scene)
                 seen.update((name, word) for word in words)
-            except Exception as error:
-                reasons = [f"{name}: crashed, {type(error).__name__}: {error}"]
-            wrong += bool(reasons)
-            for reason in reasons:
-                print(f"{number} {scene.title}: {reason}", flush=True)
+                wrong += bool(reasons)
+                for reason in reasons:
+                    print(f"{number} {scene.title}: {reason}", flush=True)
+            judged += 1
     for (name, word), count in sorted(seen.items()):
         print(f"| {name} | {word} | {count} |")
-    print(f"{len(numbers)} mechanisms of seed {args.seed}, {wrong} judgements wrong, {time.perf_counter() - begun:.0f} s")
+    print(f"{judged} mechanisms of seed {args.seed}, {wrong} judgements wrong, {time.perf_counter() - begun:.0f} s")
     return int(wrong > 0)
 
 
