@@ -77,6 +77,9 @@ def judge_steady(scene: Scene, note: Callable[[str], None]) -> Iterator[str]:
             yield from _settles(scene, cycle, size)
         return
     assert cycle.amplitude_deg is not None and cycle.amplitude_deg_error is not None and cycle.period_s is not None
+    if math.isnan(cycle.amplitude_deg_error):
+        yield f"steady: {cycle.amplitude_deg:.9g}° without an error: at another tolerance the solver gives up"
+        return
     shares = [abs(one) ** (1.0 / cycle.oscillations) for one in cycle.multipliers]
     needed = (
         math.log(LEFT * cycle.amplitude_deg_error / cycle.amplitude_deg) / math.log(max([*shares, 0.1])) if shares else 1000.0
