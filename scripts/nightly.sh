@@ -48,6 +48,7 @@ for signal in KILL INT TERM; do
 done
 step "a disk that fails" python scripts/fuzz/disk.py
 step "damaged scenes" python scripts/fuzz/scenes.py --count 2000
+step "oiled mechanisms" python scripts/fuzz/oiled.py --count 300
 step "damaged results" python scripts/fuzz/results.py --count 500
 
 step "benchmarks" watchsim verify --slow
