@@ -15,13 +15,22 @@ from shapely.geometry import LineString, Point, Polygon, box
 
 import watchsim as ws
 from watchsim.cli import main
-from watchsim.render.part_names import PartName, part_names
+from watchsim.render.part_names import PartName, _by_sides, part_names
 from watchsim.render.parts import loops_of, outline
 from watchsim.render.stage import Extras, Stage
 from watchsim.render.view import poses
+from watchsim.scene.roles import with_anchor
 from watchsim.simulation.trajectory import Trajectory
 
-MOVING = {"swiss_lever": 1.2, "graham": 1.5, "pin_pallet": 1.2, "detent": 1.2, "cylinder": 1.2}
+MOVING = {
+    "swiss_lever": 1.2,
+    "graham": 1.5,
+    "pin_pallet": 1.2,
+    "detent": 1.2,
+    "cylinder": 1.2,
+    "tourbillon": 0.6,
+    "grasshopper": 1.0,
+}
 
 
 @cache
@@ -33,7 +42,7 @@ def stage_of(run: Trajectory, names: tuple[PartName, ...], ordered: list[float])
     return Stage(run, (1280, 720), (0.0, float(run.t[-1])), extras=Extras(names=names, ordered=tuple(ordered)))
 
 
-@pytest.mark.parametrize("profile", few(list(MOVING), lambda profile: profile in ("detent", "graham")))
+@pytest.mark.parametrize("profile", few(list(MOVING), lambda profile: profile in ("detent", "graham", "tourbillon")))
 def test_names_at_ten_instants_stand_apart_and_on_their_parts(profile: str) -> None:
     run = run_of(profile, MOVING[profile])
     names = tuple(part_names(run.scene))
@@ -59,6 +68,17 @@ def test_names_at_ten_instants_stand_apart_and_on_their_parts(profile: str) -> N
             assert np.allclose(where, (x + c * px - s * py, y + s * px + c * py), atol=1e-9)
             shapes = [Polygon(outline([loop], 1e-6)) for loop in loops_of(body) if loop.closed]
             assert (px, py) == (0.0, 0.0) or any(one.buffer(1e-6).contains(Point(px, py)) for one in shapes), label.name.text
+
+
+@pytest.mark.parametrize("profile", ["swiss_lever", "bench_lever", "pin_pallet"])
+def test_pallets_named_by_their_sides_are_those_that_are_measured(profile: str) -> None:
+    scene = ws.load(ws.profiles_dir() / profile)
+    measured = {one.text.split()[0]: one for one in part_names(scene) if one.text.split()[0] in ("entry", "exit")}
+    by_sides = {one.text.split()[0]: one for one in _by_sides(scene, with_anchor(scene))}
+    assert set(measured) == set(by_sides) == {"entry", "exit"}
+    reach = math.dist(measured["entry"].point, measured["exit"].point)
+    for name, one in measured.items():
+        assert math.dist(one.point, by_sides[name].point) < 0.3 * reach
 
 
 def test_in_a_movie_names_keep_their_rows_and_lines_never_cross() -> None:

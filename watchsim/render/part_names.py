@@ -18,14 +18,15 @@ from scipy.optimize import linear_sum_assignment
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Point
 from watchsim.geometry.solids import mass_properties
+from watchsim.mechanism.compile import compile_scene
 from watchsim.render.marks import STONES, PalletStones
 from watchsim.render.palette import Style
 from watchsim.render.parts import LastingPatch, loops_of, pose_matrix
 from watchsim.render.view import Frame, Pixels, hairsprings, seen
 from watchsim.render.words import Words
-from watchsim.scene.roles import Roles, with_anchor
+from watchsim.scene.roles import Roles, drive_direction, with_anchor
 from watchsim.scene.scene import Body, Scene
-from watchsim.simulation.trajectory import Array
+from watchsim.simulation.trajectory import Array, frames
 
 OFF_PIVOT = 0.3  # of a layer's reach: a pin's middle is farther from the pivot, that of a roller is not
 ALONE = 0.5  # of all the lever's outlines by length: a shorter one is a stone of its own, a longer one carries its pallets
@@ -46,10 +47,12 @@ class PartName:
 
 
 def part_names(scene: Scene) -> list[PartName]:
-    """Wheel, lever and oscillator at their pivots, and what they touch each other with; empty without an oscillator."""
+    """Wheel, lever and oscillator at their pivots, and what they touch each other with; without an oscillator the bodies that
+    turn, as the scene calls them."""
     found = with_anchor(scene)
     if found.oscillator is None or found.wheel is None:
-        return []
+        moving = [body for body in scene.bodies if body.loops and body.motion == "pivot"]
+        return [PartName(body.name.replace("_", " "), body.name, (0.0, 0.0)) for body in moving]
     whole = [PartName("escape wheel", found.wheel, (0.0, 0.0))]
     whole.append(
         PartName(
@@ -76,7 +79,8 @@ def _pallets(scene: Scene, found: Roles) -> Iterator[PartName]:
         try:
             lever, loop = stones.stone(name)
             place = stones.place(name)
-        except ValueError:
+        except ValueError:  # nothing is measured where the wheel is carried round, or never stands
+            yield from _by_sides(scene, found)
             return
         alone = loop.length < ALONE * sum(one.length for one in loops_of(lever))
         kind = (
@@ -87,6 +91,29 @@ def _pallets(scene: Scene, found: Roles) -> Iterator[PartName]:
             else "pallet"
         )
         yield PartName(name.replace("stone", kind), lever.name, _middle([loop]) if alone else place)
+
+
+def _by_sides(scene: Scene, found: Roles) -> Iterator[PartName]:
+    """The two pallets that the wheel meets, on the lever or hinged on it: entry is the one that its teeth come to first."""
+    assert found.wheel is not None and found.lever is not None
+    places: list[tuple[str, Point]] = []
+    for contact in scene.contacts:
+        sides = {side.body: side.layer for side in contact.sides}
+        other = next((name for name in sides if found.wheel in sides and name != found.wheel), None)
+        if other is not None and found.lever in (other, scene.body(other).on):
+            places += [(other, _middle([loop])) for loop in _layer(scene.body(other), sides[other])]
+    if len(places) != len(STONES):
+        return
+    compiled = compile_scene(scene)
+    poses = frames(scene, compiled.slices, compiled.relative(compiled.q[None]))
+    at = [(pose_matrix(poses[body][0]) @ (*place, 1.0))[:2] for body, place in places]
+    wheel = poses[found.wheel][0, :2]
+    line = 0.5 * (at[0] + at[1]) - wheel
+    turn = line[0] * (at[0] - wheel)[1] - line[1] * (at[0] - wheel)[0]
+    order = places if drive_direction(scene, found.wheel) * turn < 0.0 else places[::-1]
+    kind = "stone" if found.lever != found.oscillator else "pallet"
+    for name, (body, place) in zip(STONES, order, strict=True):
+        yield PartName(name.replace("stone", kind), body, place)
 
 
 def _touching(scene: Scene, found: Roles) -> Iterator[PartName]:
