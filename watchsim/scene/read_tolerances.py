@@ -164,8 +164,9 @@ def read_tolerances(scene: Scene, faults: Faults) -> tuple[tuple[Tolerance, ...]
             table.fault("", f"{one.key} has a tolerance already: name each dimension once")
         elif one is not None:
             found[name] = one
-    correlated = tuple(_correlations(tables, found))
-    if correlated and matrix(list(found.values()), correlated)[1] < LEAST_CORRELATED:
+    correlated = tuple(_correlations(scene, tables, found))
+    keys = list(dict.fromkeys(key for one in correlated for key in one.between))
+    if correlated and matrix(keys, correlated)[1] < LEAST_CORRELATED:
         names = " and ".join(dict.fromkeys(name for one in correlated for name in one.between))
         what = f"the correlations of {names} contradict each other: their matrix is not positive definite. Make some smaller"
         faults.add("tolerances", what)
@@ -289,8 +290,8 @@ def _measured(scene: Scene, name: str, key: str, nominal: float, dimension: Dime
     return Tolerance(key, nominal, low, high, dimension, "file", 0.0, table.text("group"), 1, tuple(off.tolist()))
 
 
-def _correlations(tables: Mapping[str, Table], found: Mapping[str, Tolerance]) -> list[Correlation]:
-    """What `correlated = { "design.run" = -0.7 }` says of pairs of tolerances."""
+def _correlations(scene: Scene, tables: Mapping[str, Table], found: Mapping[str, Tolerance]) -> list[Correlation]:
+    """What `correlated = { "design.run" = -0.7 }` says of pairs of tolerances, also of those that are faulty otherwise."""
     pairs: list[Correlation] = []
     for name, table in tables.items():
         value = table.mapping.get("correlated", {})
@@ -302,18 +303,19 @@ def _correlations(tables: Mapping[str, Table], found: Mapping[str, Tolerance]) -
                 table.fault("correlated", f'"{other}" is no other tolerance. {nearest(other, tables)}', with_value=True)
             elif isinstance(number, bool) or not isinstance(number, (int, float)) or not -1.0 < number < 1.0:
                 table.fault("correlated", "a coefficient lies between -1 and 1, without its ends", with_value=True)
-            elif name in found and other in found:
-                one, two = found[name], found[other]
-                if one.group or two.group or one.count > 1 or two.count > 1:
+            else:
+                known = [found[each] for each in (name, other) if each in found]
+                if any(one.group or one.count > 1 for one in known):
                     table.fault("correlated", "what is drawn together, or for each tooth, has no correlation of its own")
-                pairs.append(Correlation((one.key, two.key), float(number)))
+                first, second = (full_key(each, scene.source.get("bodies", {})) for each in (name, other))
+                pairs.append(Correlation((first, second), float(number)))
     return pairs
 
 
-def matrix(tolerances: Sequence[Tolerance], correlated: Sequence[Correlation]) -> tuple[np.ndarray, float]:
-    """The correlations of normal scores of all tolerances (n, n), and the smallest eigenvalue of that matrix."""
-    numbers = {one.key: i for i, one in enumerate(tolerances)}
-    whole = np.eye(len(tolerances))
+def matrix(keys: Sequence[str], correlated: Sequence[Correlation]) -> tuple[np.ndarray, float]:
+    """The correlations of normal scores of the tolerances of those keys (n, n), and the smallest eigenvalue of that matrix."""
+    numbers = {key: i for i, key in enumerate(keys)}
+    whole = np.eye(len(keys))
     for one in correlated:
         i, j = (numbers[key] for key in one.between)
         whole[i, j] = whole[j, i] = one.coefficient

@@ -82,7 +82,7 @@ class Space:
         """What makes correlated normal scores of independent ones; None where all are independent."""
         if not self.correlated:
             return None
-        whole, _ = matrix(self.tolerances, self.correlated)
+        whole, _ = matrix([one.key for one in self.tolerances], self.correlated)
         places = [draw.members[0] for draw in self.draws]
         made: Floats = np.linalg.cholesky(whole[np.ix_(places, places)])
         return made
