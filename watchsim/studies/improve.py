@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.analysis.verdict_kinds import Verdict
+from watchsim.analysis.verdict_kinds import SPOKEN, Verdict
 from watchsim.scene.errors import Fault, SceneError
 from watchsim.scene.load import changed
 from watchsim.scene.roles import nominal_frequency
@@ -107,7 +107,7 @@ def improve(  # noqa: PLR0913 - options, by name
     method    auto, slsqp, nelder-mead, differential-evolution (then slsqp)
     starts    so many searches, the first from the scene as it is, the others from elsewhere between the limits
     points    designs on a front
-    duration  s: by the end of a run instead of by limit cycles
+    duration  s: by the end of a run instead of by limit cycles; what is found must work on its limit cycle, too
     progress  called with the number of designs looked at
 
     Limits and goals in the unit that an output has in tables. SceneError with all that is wrong with the arguments.
@@ -474,7 +474,9 @@ class Search:
         ends = self.ends
         alone = [first, *(self.optimum(end, self.limits, first, method) for end in ends[1:])]
         corners = np.array([self.values([one])[0] for one in alone if one is not None])
-        designs = [one for one in alone if one is not None]
+        designs = [one for one in alone if one is not None and not self._later(one)]
+        if not designs:
+            return self._report(first)
         levels = []
         for index, _ in ends[1:]:
             low, high = float(corners[:, index].min()), float(corners[:, index].max())
@@ -485,7 +487,7 @@ class Search:
         for held in itertools.product(*levels):
             more = [Limit(index, way[index], value) for index, value in held]
             design = self.optimum(ends[0], (*self.limits, *more), begin, method)
-            if design is not None:
+            if design is not None and not self._later(design):
                 designs.append(design)
                 begin = design
         signed = np.array([[sign * self.values([one])[0][i] for i, sign in ends] for one in designs])
@@ -517,6 +519,18 @@ class Search:
         )
         values = ", ".join(f"{k.key} = {k.shown(x)}" for k, x in zip(self.knobs, self.at(np.frombuffer(near)), strict=True))
         return f"no design between these limits keeps all of them. The nearest ({values}): {words}"
+
+    def _later(self, point: Array) -> str:
+        """What becomes of a design after the run by which it was judged: its fault on the limit cycle; "" where it works."""
+        if self.question.by_shooting or Verdict(self.rows[point.tobytes()].get("verdict")).name is None:
+            return ""
+        cycle = steady(changed(self.question.scene, self._changes(point)), tolerance=self.question.tolerance)
+        if Verdict(cycle.verdict).works:
+            return ""
+        values = ", ".join(f"{one.key} = {one.shown(x)}" for one, x in zip(self.knobs, self.at(point), strict=True))
+        end, fault = f"{self.question.duration:g} s", SPOKEN.get(str(cycle.verdict), cycle.verdict)
+        found = f"the design found ({values}) works for {end}, but not for good: as it settles it {fault}"
+        return f"{found}. Judge by a longer run, or by limit cycles (without a duration)"
 
     def _why(self, point: Array) -> str:
         row = self.rows[point.tobytes()]
@@ -586,6 +600,8 @@ class Search:
     def _report(
         self, point: Array | None, message: str = "", starts: tuple[int, int] = (1, 1), active: tuple[str, ...] = ()
     ) -> Better:
+        later = "" if point is None else self._later(point)
+        point, message = (None, later) if later else (point, message)
         old = self.seen[self.start.tobytes()]
         moved = any(not one.low <= one.value <= one.high for one in self.knobs)  # the start is not the scene as it is
         new = None if point is None else self.values([point])[0]
