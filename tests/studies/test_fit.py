@@ -153,21 +153,30 @@ def test_readings_in_positions_and_hours_after_winding(tmp_path):
     scene = ws.load(Path(__file__).parents[2] / "docs" / "guide" / "positions" / "swiss_lever.toml")
     centre = "bodies.balance.centre_of_mass"
     truth = {f"{centre}.0": 0.9e-6, f"{centre}.1": 0.3e-6, "torques.0.efficiency": 0.72}
-    true = scene
-    for key, value in truth.items():
-        true = true.set(key, value)
-    random = np.random.default_rng(11)
+    watches, errors = (("CH", 0), ("3H", 0), ("6H", 0), ("9H", 24), ("CH", 24)), np.array([0.1, 0.2])
+
+    def read(values):
+        """Rates and amplitudes of the watches (10), in parts of their errors."""
+        true = scene
+        for key, value in values.items():
+            true = true.set(key, value)
+        cycles = [ws.steady(true.set("watch.position", one).set("watch.since_wound", 3600.0 * wound)) for one, wound in watches]
+        return np.concatenate([(one.rate_s_per_d, one.amplitude_deg) / errors for one in cycles])
+
+    readings = (read(truth) + np.random.default_rng(11).standard_normal(10)).reshape(-1, 2) * errors
     lines = ["position,wound_h,rate_s_per_d,amplitude_deg,rate_s_per_d_error,amplitude_deg_error"]
-    for position, wound in (("CH", 0), ("3H", 0), ("6H", 0), ("9H", 24), ("CH", 24)):
-        cycle = ws.steady(true.set("watch.position", position).set("watch.since_wound", 3600.0 * wound))
-        rate, amplitude = np.array([cycle.rate_s_per_d, cycle.amplitude_deg]) + (0.1, 0.2) * random.standard_normal(2)
+    for (position, wound), (rate, amplitude) in zip(watches, readings, strict=True):
         lines.append(f"{position},{wound},{rate},{amplitude},0.1,0.2")
     (tmp_path / "readings.csv").write_text("\n".join(lines), encoding="utf-8")
     found = ws.fit(scene, tmp_path / "readings.csv", list(truth))
-    for key, value in truth.items():
+    # What such readings can say, by differences about the truth: the height of the centre to no better than ±15 %.
+    ends = [[read(truth | {key: (1.0 + step) * value}) for step in (-0.01, 0.01)] for key, value in truth.items()]
+    jacobian = np.array([(high - low) / 0.02 for low, high in ends]).T  # by shares of the truth
+    widths = 2.0 * 1.959964 * np.sqrt(np.diag(np.linalg.inv(jacobian.T @ jacobian)))
+    for (key, value), width in zip(truth.items(), widths, strict=True):
         one = found.keys[key]
         assert one.low < value < one.high
-        assert one.high - one.low < 0.4 * abs(value)
+        assert one.high - one.low == pytest.approx(width * value, rel=0.1)
 
 
 @pytest.mark.slow
