@@ -175,7 +175,7 @@ ROOT_RESOLUTION = 1e-15
 # Of the time: the same for turning points and passages, whose times make the rate. Large: jitter; small: needless
 # evaluations.
 PASSAGE_RESOLUTION = 1e-16
-# tolerances: defect of a step's extension. Its path is off by a fifth of that: in lever scenes by 6 at most, in a step that has
+# tolerances: defect of a step's extension. Its path is off by a fifth of that: in lever scenes by 2 at most, in a step that has
 # grown too fast by 200. Large: contacts close early or late; small: needless steps.
 DEFECT = 10.0
 # tolerances: share of the kinetic energy by which the energy on a step's path may miss the work done on it, where forces go
