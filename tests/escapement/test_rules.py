@@ -8,9 +8,12 @@ import re
 from dataclasses import replace
 from itertools import combinations
 
+import numpy as np
 import pytest
 from escapement.made import swiss_scene
 from every_time import few
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.text import Text
 
 from watchsim.cli import main
 from watchsim.commands.console import BAD_INPUT, FINE
@@ -137,6 +140,27 @@ def test_views_and_words_of_the_sheet_stand_beside_each_other(width):
     for one, other in combinations(boxes, 2):
         assert one.x1 <= other.x0 or other.x1 <= one.x0 or one.y1 <= other.y0 or other.y1 <= one.y0
         assert one.y1 > other.y0
+
+
+@pytest.mark.parametrize("profile", few(["swiss_lever", "graham", "coaxial"], 1))
+def test_words_of_the_sheet_stand_beside_the_parts(profile):
+    """Counted in the finished picture without its words: little is drawn where they stand, and they are clear of each other."""
+    scene = load(profiles_dir() / profile / "scene.toml")
+    figure = function_sheet(scene, compile_scene(scene), measure(scene))
+    figure.set_dpi(200)
+    canvas = FigureCanvasAgg(figure)
+    words = [one for axes in figure.axes for one in axes.texts if one.get_text() and one.get_visible() and not one.get_gid()]
+    for one in words:
+        one.update_positions(canvas.get_renderer())
+    extents = [Text.get_window_extent(one, canvas.get_renderer()) for one in words]
+    for one in words:
+        one.set_visible(False)
+    canvas.draw()
+    drawn = np.asarray(canvas.buffer_rgba())[::-1, :, :3].min(axis=2) < 250
+    assert len(words) >= 4
+    for one, box in zip(words, extents, strict=True):
+        assert drawn[int(box.y0) : int(box.y1), int(box.x0) : int(box.x1)].mean() < 0.2, one.get_text()
+    assert not any(one.overlaps(other) for one, other in combinations(extents, 2))
 
 
 def test_the_picture_has_the_sheet_beside_it(tmp_path, capsys):

@@ -18,6 +18,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.text import Annotation, Text
 
 from watchsim.escapement.by_hand import Hands
 from watchsim.escapement.fork_and_pin import Passage
@@ -36,6 +37,7 @@ from watchsim.units import signed
 
 THIN, SIZE = 0.6, 7.0  # pt
 HEAD = "-|>,head_width=0.12,head_length=0.3"
+FIXED = "stays"  # words that do not give way
 HALO = {"boxstyle": "round,pad=0.12", "facecolor": "white", "edgecolor": "none", "alpha": 0.85}
 
 
@@ -60,7 +62,7 @@ def arc(axes: Axes, centre: Point, radius: float, angles: tuple[float, float], c
 
 
 def note(axes: Axes, place: Point, words: str, colour: str = INK, aside: tuple[float, float] = (0.0, 0.0)) -> None:
-    """Words beside a place (mm), shifted by `aside` (pt), on a pale ground so that what lies below does not disturb."""
+    """Words beside a place (mm), shifted by `aside` (pt), or where `clear_labels` finds room for them."""
     _beside(axes, place, words, aside, colour, annotation_clip=False)
 
 
@@ -131,7 +133,7 @@ def scale_bar(axes: Axes) -> None:
     length = next(value for value in (5.0, 2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.0) if value <= 0.22 * (right - left))
     x, y = left + 0.04 * (right - left), low + 0.05 * (high - low)
     axes.plot((x, x + length), (y, y), color="#333333", linewidth=1.2, solid_capstyle="butt", zorder=7)
-    note(axes, (x + 0.5 * length, y), f"{length:g} mm", "#333333", (0.0, 6.0))
+    _beside(axes, (x + 0.5 * length, y), f"{length:g} mm", (0.0, 6.0), "#333333", annotation_clip=False, gid=FIXED)
 
 
 def locked(axes: Axes, aspect: float, views: Views, k: int) -> None:
@@ -387,9 +389,56 @@ def function_sheet(scene: Scene, compiled: Compiled, function: Function, width: 
         axes = figure.add_axes((left / width, 1.0 - (top + tall) / height, wide / width, tall / height))
         view(axes, wide / tall)
         scale_bar(axes)
+    clear_labels(figure)
     for i, block in enumerate(blocks):
         _table(figure, block, (width, height), (MARGIN + i * 0.5 * width, foot + 2.0))
     return figure
+
+
+COARSE = 100.0  # dots per inch, to look for room
+FARTHEST, NEAR = 70.0, 4.0  # pt, from where words were put; a shift so small needs no line
+COVERED = 400.0  # pt of shift that a label wholly over lines and faces is worth
+AIR = 2  # dots round the words
+
+
+def clear_labels(figure: Figure) -> None:
+    """Shift the words of every view to where they cover least, nearest first, with a line to what they name if they moved."""
+    canvas, dpi = FigureCanvasAgg(figure), figure.dpi
+    figure.set_dpi(COARSE)
+    labels = [
+        one
+        for axes in figure.axes
+        for one in axes.texts
+        if isinstance(one, Annotation) and one.get_text() and one.get_gid() != FIXED
+    ]
+    for one in labels:
+        one.set_visible(False)
+    canvas.draw()
+    drawn = np.asarray(canvas.buffer_rgba())[::-1, :, :3].min(axis=2) < 250  # rows from below, as window extents count
+    steps = np.arange(-FARTHEST, FARTHEST + 1.0, 3.0)
+    for one in labels:
+        one.set_visible(True)
+        one.update_positions(canvas.get_renderer())
+        box, room = Text.get_window_extent(one, canvas.get_renderer()), one.axes.get_window_extent()  # without its line
+        covered = np.pad(np.cumsum(np.cumsum(drawn, axis=0, dtype=np.int64), axis=1), ((1, 0), (1, 0)))
+        wide, tall = int(box.width) + 2 * AIR, int(box.height) + 2 * AIR
+        found = []
+        for dx in steps:
+            for dy in steps:
+                x, y = int(box.x0 + dx * COARSE / 72.0) - AIR, int(box.y0 + dy * COARSE / 72.0) - AIR
+                if x > room.x0 and y > room.y0 and x + wide < room.x1 and y + tall < room.y1:
+                    under = covered[y + tall, x + wide] - covered[y, x + wide] - covered[y + tall, x] + covered[y, x]
+                    found.append((math.hypot(dx, dy) + COVERED * under / (wide * tall), dx, dy, x, y))
+        if not found:
+            continue
+        _, dx, dy, x, y = min(found)
+        drawn[y : y + tall, x : x + wide] = True
+        if math.hypot(dx, dy) > NEAR:
+            ax, ay = one.xyann
+            one.set_visible(False)
+            line = {"arrowstyle": "-", "color": one.get_color(), "linewidth": 0.4, "shrinkA": 0, "shrinkB": 0}
+            _beside(one.axes, one.xy, one.get_text(), (ax + dx, ay + dy), one.get_color(), arrowprops=line)
+    figure.set_dpi(dpi)
 
 
 def _places(count: int, width: float, shape: float) -> tuple[list[tuple[float, float, float, float]], float]:
