@@ -406,20 +406,20 @@ def clear_labels(figure: Figure) -> None:
     canvas, dpi = FigureCanvasAgg(figure), figure.dpi
     figure.set_dpi(COARSE)
     labels = [
-        one
+        (axes, one)
         for axes in figure.axes
         for one in axes.texts
         if isinstance(one, Annotation) and one.get_text() and one.get_gid() != FIXED
     ]
-    for one in labels:
+    for _, one in labels:
         one.set_visible(False)
     canvas.draw()
     drawn = np.asarray(canvas.buffer_rgba())[::-1, :, :3].min(axis=2) < 250  # rows from below, as window extents count
     steps = np.arange(-FARTHEST, FARTHEST + 1.0, 3.0)
-    for one in labels:
+    for axes, one in labels:
         one.set_visible(True)
         one.update_positions(canvas.get_renderer())
-        box, room = Text.get_window_extent(one, canvas.get_renderer()), one.axes.get_window_extent()  # without its line
+        box, room = Text.get_window_extent(one, canvas.get_renderer()), axes.get_window_extent()  # without its line
         covered = np.pad(np.cumsum(np.cumsum(drawn, axis=0, dtype=np.int64), axis=1), ((1, 0), (1, 0)))
         wide, tall = int(box.width) + 2 * AIR, int(box.height) + 2 * AIR
         found = []
@@ -436,8 +436,7 @@ def clear_labels(figure: Figure) -> None:
         if math.hypot(dx, dy) > NEAR:
             ax, ay = one.xyann
             one.set_visible(False)
-            line = {"arrowstyle": "-", "color": one.get_color(), "linewidth": 0.4, "shrinkA": 0, "shrinkB": 0}
-            _beside(one.axes, one.xy, one.get_text(), (ax + dx, ay + dy), one.get_color(), arrowprops=line)
+            pointed(axes, one.xy, one.get_text(), (ax + dx, ay + dy), str(one.get_color()))
     figure.set_dpi(dpi)
 
 
