@@ -253,23 +253,23 @@ class Meetings(NamedTuple):
 
 def meetings(table: Table, first: Ints, second: Ints, reach: float) -> Meetings:
     """All points where edges first[k] and second[k] come together within `reach` metres."""
-    numbers = np.arange(len(first))
-    pairs: list[Ints] = []
-    points: list[Floats] = []
-    for a, b in ((first, second), (second, first)):
-        for end in (table.start, table.end):
-            keep = within(table, b, end[a], reach)
-            pairs.append(numbers[keep])
-            points.append(end[a][keep])
+    numbers, none = np.arange(len(first)), np.zeros((0, 2))
+    # All at once: most calls are of few pairs, where a call costs more than what it computes.
+    ends = np.concatenate([end[a] for a in (first, second) for end in (table.start, table.end)])
+    pairs, others = np.tile(numbers, 4), np.concatenate([second, second, first, first])
+    keep = within(table, others, ends, reach)
+    pairs, points = pairs[keep], ends[keep]
+    some: list[Ints] = []
+    root: list[Floats] = [none]
     for a_arc, b_arc, roots in ((False, False, _lines), (False, True, _line_circle), (True, True, _circles)):
         for a, b in ((first, second), (second, first))[: 1 if a_arc == b_arc else 2]:
             chosen = numbers[(table.arc[a] == a_arc) & (table.arc[b] == b_arc)]
-            for found, root in roots(table, a[chosen], b[chosen], reach):
-                some, p = chosen[found], root[found]
-                keep = within(table, a[some], p, reach) & within(table, b[some], p, reach)
-                pairs.append(some[keep])
-                points.append(p[keep])
-    return Meetings(np.concatenate(pairs), np.concatenate(points))
+            for found, point in roots(table, a[chosen], b[chosen], reach) if len(chosen) else ():
+                some.append(chosen[found])
+                root.append(point[found])
+    met, place = np.concatenate([numbers[:0], *some]), np.concatenate(root)
+    keep = within(table, first[met], place, reach) & within(table, second[met], place, reach)
+    return Meetings(np.concatenate([pairs, met[keep]]), np.concatenate([points, place[keep]]))
 
 
 def within(table: Table, edge: Ints, point: Floats, reach: float) -> Flags:
