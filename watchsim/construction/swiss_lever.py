@@ -272,7 +272,7 @@ def drop_after_recoil(design: Swiss, side: int) -> float:
     the stone stays outside the wheel.
     """
     tooth = _radii_and_angles(_back_of_tooth(design))
-    stone = _points(_let_off_faces(design, -side))
+    stone = np.array(_points(_let_off_faces(design, -side)))
     places = np.linspace(design.bank, design.unlocked, STEPS + 1)
     return min(_left(design, side, float(lever), tooth, stone) for lever in places)
 
@@ -283,19 +283,17 @@ def recoil(design: Swiss, side: int) -> float:
 
 
 def _left(
-    design: Swiss, side: int, lever: float, tooth: tuple[NDArray[np.float64], NDArray[np.float64]], stone: Sequence[Point]
+    design: Swiss, side: int, lever: float, tooth: tuple[NDArray[np.float64], NDArray[np.float64]], stone: NDArray[np.float64]
 ) -> float:
     pitch = 360.0 / design.teeth
     spaces = 2.0 * design.half_span / pitch
     let_off = _locked_toe(design, side, lever) + (-math.ceil(spaces) if side > 0 else math.floor(spaces)) * pitch
-    placed = [design.in_movement(point, side * lever) for point in stone]
-    radii, angles = tooth
-    gaps = [
-        angle_of(point) - let_off - float(np.interp(math.hypot(*point), radii, angles))
-        for point in placed
-        if radii[0] <= math.hypot(*point) <= radii[-1]
-    ]
-    return min(gaps, default=math.inf)
+    c, s = math.cos(math.radians(side * lever)), math.sin(math.radians(side * lever))
+    x = c * stone[:, 0] - s * stone[:, 1] + design.lever_pivot[0]
+    y = s * stone[:, 0] + c * stone[:, 1] + design.lever_pivot[1]
+    (radii, angles), radius = tooth, np.hypot(x, y)
+    gaps = np.degrees(np.arctan2(y, x)) - let_off - np.interp(radius, radii, angles)
+    return float(gaps[(radii[0] <= radius) & (radius <= radii[-1])].min(initial=math.inf))
 
 
 def _locked_toe(design: Swiss, side: int, lever: float) -> float:

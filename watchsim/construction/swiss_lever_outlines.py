@@ -170,6 +170,8 @@ class Swiss:
         low, high = 0.0, self.tip_radius / 4.0
         for _ in range(200):
             middle = (low + high) / 2.0
+            if middle in (low, high):
+                break
             inside = math.hypot(*along(corner, direction, middle)) < self.tip_radius
             low, high = (middle, high) if inside else (low, middle)
         return angle_of(along(corner, direction, low))
