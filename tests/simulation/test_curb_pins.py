@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 import tomllib
 
+from watchsim.analysis.timeline import shown_beats
+from watchsim.paths import profiles_dir
+from watchsim.render.energy_plot import pushes, torque_on
 from watchsim.scene.errors import SceneError
-from watchsim.scene.load import from_mapping
+from watchsim.scene.forces import Curb
+from watchsim.scene.load import from_mapping, load
 from watchsim.scene.scene import Scene
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.state import EventKind
@@ -122,3 +127,20 @@ def test_an_open_play_of_the_pins_loses_at_short_arcs_and_the_index_gains() -> N
 def test_pins_that_cannot_be_are_refused(curb: str, more: str, said: str) -> None:
     with pytest.raises(SceneError, match=said):
         balance(curb, 4.0, more)
+
+
+def test_what_the_lever_gives_a_balance_between_pins() -> None:
+    """Work and impulse of its books, which count what the pins press, against the contact forces and impacts."""
+    scene = load(profiles_dir() / "swiss_lever" / "scene.toml")
+    spring = replace(scene.springs[0], curb=Curb(0.05, math.radians(20.0)))
+    run = simulate(replace(scene, springs=(spring,)), duration=1.4)
+    quiet = 0
+    for found in pushes(run, shown_beats(run, None, rubbed=False)[-2:]):
+        for push in found:
+            assert push.forces + push.impacts == pytest.approx(push.stage.energy.to_balance, abs=1e-12)
+            if not push.struck and push.stage.name == "run to banking":
+                times = np.linspace(push.stage.phase.start, push.stage.phase.end, 2001)[1:-1]
+                pressed = float(np.trapezoid(torque_on(run, "balance", times), times))
+                assert push.stage.impulse == pytest.approx(pressed, rel=5e-3)
+                quiet += 1
+    assert quiet

@@ -143,8 +143,8 @@ class Flows:
     damped  what damping and dry bearings of each coordinate have taken so far, J (rows, n)
     joined  what springs between bodies have given each coordinate so far, less what `damped` counts of theirs, J
     swept   integral of each coordinate over time so far, rad s
-    bent    integral over time of what is neither constant nor linear on each coordinate: weight, cubic springs, drag, dry
-            friction, N·m·s
+    bent    integral over time of what is neither constant nor linear on each coordinate: weight, cubic springs, curb pins,
+            drag, dry friction, N·m·s
     """
 
     t: Array
@@ -187,7 +187,7 @@ def flows(run: Trajectory, compiled: Compiled, rows: slice = slice(None)) -> Flo
     driven = _constant_work(model, 0.5 * step * (u[:-1] + u[1:]) + step * step / 12.0 * (a[:-1] - a[1:]))
     damped, joined, bent = (np.zeros_like(driven) for _ in range(3))
     moved, slowed = _changing(model)
-    curved = np.flatnonzero((c.weight_x != 0.0) | (c.weight_y != 0.0) | (c.cubic != 0.0)).tolist()
+    curved = np.flatnonzero((c.weight_x != 0.0) | (c.weight_y != 0.0) | (c.cubic != 0.0) | (c.pinned != 0.0)).tolist()
     moved = sorted({*moved, *curved})
     if moved or slowed:
         place, speed = _position(step, (q, u, a), moved), _velocity(h, (u, a), sorted({*moved, *slowed}))
@@ -347,7 +347,9 @@ def _bent(model: Model, q: Row, u: Row, curved: list[int]) -> Array:
     for k, speed in u.items():
         torque[:, k] -= c.coulomb[k] * np.sign(speed) + c.quadratic[k] * np.abs(speed) * speed
     for k in curved:
-        torque[:, k] += np.cos(q[k]) * c.weight_y[k] - np.sin(q[k]) * c.weight_x[k] - c.cubic[k] * (q[k] - c.rest[k]) ** 3
+        way = q[k] - c.rest[k]
+        torque[:, k] += np.cos(q[k]) * c.weight_y[k] - np.sin(q[k]) * c.weight_x[k] - c.cubic[k] * way**3
+        torque[:, k] -= c.pinned[k] * (way - np.clip(way, c.pin_low[k], c.pin_high[k]))
     return torque
 
 
