@@ -14,8 +14,9 @@ from pathlib import Path
 
 import numpy as np
 
-from watchsim.proposal.propose import NothingToPropose, Proposal, propose
+from watchsim.proposal.propose import NothingToPropose, Proposal
 from watchsim.proposal.roles import Role, plain
+from watchsim.proposal.trial import tried
 from watchsim.scene.load import load
 from watchsim.scene.scene import Scene
 from watchsim.simulation.simulate import simulate
@@ -53,7 +54,7 @@ def row(name: str, folder: Path) -> str:
 
 def proposed(real: Scene, path: Path, layers: str) -> Proposal | str:
     try:
-        return propose([assembly(real, path, layers)])
+        return tried([assembly(real, path, layers)])
     except NothingToPropose as error:
         return str(error).splitlines()[0]
 

@@ -338,6 +338,13 @@ def test_started_on_the_other_pallet():
     check(measure(scene.set("bodies.pendulum.angle", "-2°").set("bodies.wheel.angle", "-0.825°")), values)
 
 
+def test_a_pin_that_slides_off_the_wrong_face_is_not_measured():
+    """Started beyond the dead face of its pallet, a pin is let off without an impulse."""
+    scene = load(profiles_dir() / "pin_wheel").set("bodies.pendulum.angle", "-1.49°").set("bodies.wheel.angle", "5.50782°")
+    ((what, why),) = measure(scene).missing
+    assert what == "lock, draw, lift, drop" and "let off without having driven pendulum" in why
+
+
 def test_a_detent_is_told_what_is_measured():
     function = measure(load(profiles_dir() / "detent"))
     assert function.pallets is None

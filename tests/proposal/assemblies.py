@@ -8,7 +8,7 @@ from pathlib import Path
 from watchsim.drawing.write import dxf_text
 from watchsim.paths import profiles_dir
 from watchsim.scene.load import load
-from watchsim.scene.roles import keeps_time
+from watchsim.scene.roles import keeps_time, oscillators
 from watchsim.scene.scene import Scene
 from watchsim.scene.trains import start_poses
 
@@ -20,16 +20,17 @@ def scene_of(name: str) -> Scene:
 
 
 def assembly(scene: Scene, path: Path, layers: str = "own", marks: bool = True, without: tuple[str, ...] = ()) -> Path:
-    """Draw a scene in `path`: with a balance, it and the lever at rest, all else as it starts; fixed parts have no mark.
+    """Draw a scene in `path`: what swings, and a lever, at rest, all else as it starts; fixed parts have no mark.
 
     layers  own: as in the drawings of the parts; body: with the body's name before; whole: the body's name;
             loose: everything on layer 0
     """
     springs = {spring.body for spring in scene.springs} if keeps_time(scene) else set()
+    hang = {one.body: one.rest for one in oscillators(scene) if not one.spring}
     loops, points = [], []
     for body in scene.bodies:
         x, y, angle = start_poses(scene)[body.name]
-        angle = 0.0 if springs and body.name in (*springs, "lever") else angle
+        angle = 0.0 if springs and body.name in (*springs, "lever") else hang.get(body.name, angle)
         for loop in (*body.loops, *body.decoration):
             if loop.layer in without:
                 continue

@@ -239,7 +239,7 @@ BARE = {  # layers named after features alone, or not at all: parts by profile, 
     "detent": {
         ("TEETH",): "wheel",
         ("BAR", "HORN", "HUB", "STONE"): "lever",
-        ("LEAF",): "lever",  # the passing spring: a body of its own, and doubted
+        ("LEAF",): "passing",
         ("DISCHARGE", "IMPULSE_STONE", "RIM", "ROLLER", "TABLE"): "oscillator",
         ("SCREW",): "fixed",
     },

@@ -9,7 +9,6 @@ from __future__ import annotations
 import contextlib
 import os
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -158,22 +157,20 @@ def write_start(folder: Path, files: dict[str, bytes], design: str = "") -> list
 def start_from_drawings(names: Sequence[str], output: str | None, as_json: bool, force: bool) -> None:
     """Write a folder with the scene that the drawings suggest, and the drawings it needs, whole or not at all."""
     from watchsim.commands.console import announce_compile
-    from watchsim.proposal.propose import NothingToPropose, propose
-    from watchsim.proposal.trial import trial
+    from watchsim.proposal.propose import NothingToPropose
+    from watchsim.proposal.trial import tried
 
     paths = [Path(name) for name in names]
     missing = [f"{path}: {'is a folder' if path.is_dir() else 'there is no such file'}" for path in paths if not path.is_file()]
     if missing:
         raise InputError("\n".join(missing))
     folder = unused_folder(Path(output or paths[0].stem), force)
+    announce_compile()
     try:
-        found = propose(paths)
+        found = tried(paths)
     except NothingToPropose as error:
         raise InputError(f"{error}.") from error
     names = write_start(folder, dict(found.files))
-    if found.meets:
-        announce_compile()
-        found = replace(found, doubts=(*found.doubts, *trial(found.files)))
     if as_json:
         print_json({**as_mapping(found, folder), "files": names})
         return

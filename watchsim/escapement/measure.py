@@ -91,6 +91,8 @@ def _passage(wheel: Wheel, sweep: Sweep, side: float, tooth: int) -> Passage:
     caught = sweep.let_offs[0].landed if len(sweep.let_offs) > 1 else None
     unlocked = sweep.let_offs[0].last if caught else locked[-1].last if locked else sweep.stretches[0].first
     last = next(i for i, stretch in enumerate(sweep.stretches) if stretch.last == let_off.last)
+    if len(locked) > last:
+        raise NotMeasured(f"a tooth is let off without having driven {wheel.parts.lever}: there is no lift")
     assert let_off.landed is not None
     driven = sweep.stretches[len(locked) : last + 1]
     room = sweep.room[len(locked)] if locked else sweep.room[0]

@@ -61,7 +61,12 @@ def _chain(roles: Sequence[Role], facings: Sequence[Facing]) -> Iterator[str]:
     levers = [role for role in roles if role.task == LEVER]
     if wheel is None or swinging is None:
         return
-    between = [lever for lever in levers if all({lever.name, one.name} in pairs for one in (wheel, swinging))]
+    carried = {role.on.name: role.name for role in roles if role.on is not None}  # a detent is moved by its passing spring
+    between = [
+        lever
+        for lever in levers
+        if {lever.name, wheel.name} in pairs and {carried.get(lever.name, lever.name), swinging.name} in pairs
+    ]
     if levers and not between:
         yield (
             f"no lever comes within reach of both {wheel.name} and {swinging.name}, so that nothing passes "
@@ -69,10 +74,7 @@ def _chain(roles: Sequence[Role], facings: Sequence[Facing]) -> Iterator[str]:
         )
     elif len(levers) > 1:
         rest = ", ".join(lever.name for lever in levers if lever is not between[0])
-        yield (
-            f"{rest} is no second lever of an escapement: give its layers to {between[0].name}, or, where it is a passing "
-            f'spring, write on = "{between[0].name}" and a spring of its own'
-        )
+        yield (f"{rest} is no second lever of an escapement: give its layers to {between[0].name}, or leave it out")
     elif not levers and {wheel.name, swinging.name} not in pairs:
         yield f"{wheel.name} and {swinging.name} never come within reach of each other: nothing keeps {swinging.name} going"
 
@@ -88,7 +90,10 @@ def _heights(moving: Sequence[Role], facings: Sequence[Facing]) -> Iterator[str]
     """Parts that lie over each other, where no name says which of their surfaces are at one height."""
     partners = [{WHEEL, LEVER}, {LEVER, OSCILLATOR}]
     partners += [] if any(role.task == LEVER for role in moving) else [{WHEEL, OSCILLATOR}]
+    carrying = [role.on for role in moving if role.on is not None]  # a detent is moved by its passing spring alone
     for one, other in itertools.combinations(moving, 2):
+        if (one in carrying or other in carrying) and OSCILLATOR in (one.task, other.task):
+            continue
         met = [facing for facing in facings if {facing.first.name, facing.second.name} == {one.name, other.name}]
         nameless = not any(facing.by_name for facing in met)
         if {one.task, other.task} in partners and nameless and (len(met) > MANY or not met) and _lie_over(one, other):

@@ -21,6 +21,7 @@ from watchsim.proposal.pieces import (
     FORK,
     LEVER,
     OSCILLATOR,
+    PASSING,
     RESTING,
     WHEEL,
     Floats,
@@ -64,7 +65,10 @@ def facings(roles: Sequence[Role], size: float) -> tuple[list[Facing], list[Faci
     others: list[Facing] = []
     for k, one in enumerate(roles):
         for other in roles[k + 1 :]:
-            if not (one.moves or other.moves) or _misses(one, other):
+            if not (one.moves or other.moves) or _misses(one, other) or _passes(one, other, roles):
+                continue
+            if one.on is other or other.on is one:
+                likely.append(_rests_on(one, other))
                 continue
             met = [facing for a in one.part.layers for b in other.part.layers if (facing := _facing(one, a, other, b, size))]
             kept = _best_named([facing for facing in met if facing.by_name]) or [
@@ -111,6 +115,21 @@ def _misses(one: Role, other: Role) -> bool:
     return FIXED in tasks <= {WHEEL, DRIVER, OSCILLATOR, FIXED} and not (one.little or other.little)
 
 
+def _passes(one: Role, other: Role, roles: Sequence[Role]) -> bool:
+    """A passing spring meets what carries it and the oscillator, which by it alone moves the detent."""
+    tasks = {one.task, other.task}
+    if PASSING in tasks:
+        return OSCILLATOR not in tasks and one.on is not other and other.on is not one
+    return tasks == {LEVER, OSCILLATOR} and any(role.on in (one, other) for role in roles)
+
+
+def _rests_on(one: Role, other: Role) -> Facing:
+    """The two layers of a passing spring and its carrier that lie against each other."""
+    pairs = [(float(p.region.distance(q.region)), p.layer, q.layer) for p in one.part.pieces for q in other.part.pieces]
+    _, a, b = min(pairs)
+    return Facing(one, a, other, b, "the passing spring lies against it")
+
+
 def _facing(one: Role, a: str, other: Role, b: str, size: float) -> Facing | None:
     pairs = [(p, q) for p in one.part.on(a) for q in other.part.on(b)]
     overlap = max(_overlap(p, q) for p, q in pairs)
@@ -153,7 +172,7 @@ def _swung(role: Role, piece: Piece) -> list[Floats]:
     """The outer points of a piece at some angles of its body; of what stands still where it is."""
     if not role.moves:
         return [piece.points]
-    swing = SWING if role.task in (LEVER, OSCILLATOR, CLICK) else math.pi
+    swing = SWING if role.task in (LEVER, PASSING, OSCILLATOR, CLICK) else math.pi
     return [about(piece.points, _at(role), angle) for angle in np.linspace(-swing, swing, STEPS).tolist()]
 
 

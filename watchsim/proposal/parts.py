@@ -176,10 +176,11 @@ def _share(part: Part, other: Part) -> float:
 
 def _nearest(loose: Part, parts: Sequence[Part]) -> Part | None:
     bodies = [part for part in parts if part.centre is not None and not are_apart(loose, part)]
-    return min(bodies, key=lambda part: _distance(loose, part), default=None)
+    return min(bodies, key=lambda part: distance(loose, part), default=None)
 
 
-def _distance(one: Part, other: Part) -> float:
+def distance(one: Part, other: Part) -> float:
+    """Between the outlines as they are drawn, m."""
     return min(float(p.region.distance(q.region)) for p in one.pieces for q in other.pieces)
 
 
@@ -200,7 +201,7 @@ def give_to_close(parts: list[Part]) -> None:
         if len(loose.pieces) > 1 or loose.pieces[0].is_disc:
             continue
         body = _nearest(loose, [part for part in parts if not _is_wheel(part)])
-        if body is not None and _distance(loose, body) <= near:
+        if body is not None and distance(loose, body) <= near:
             unite(body, loose, "it nearly touches them")
             parts.remove(loose)
 

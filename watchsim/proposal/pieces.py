@@ -246,6 +246,7 @@ def _region(rings: Sequence[Floats]) -> Region:
 # What names of layers, blocks and files say, in the languages of watchmaking: English, German, French.
 
 WHEEL, LEVER, OSCILLATOR, CLICK, DRIVER, FIXED = "wheel", "lever", "oscillator", "click", "driver", "fixed"
+PASSING = "passing"  # the spring that a detent carries
 
 # Words for a part itself; a layer name that begins with one names its part.
 PARTS = {
@@ -273,13 +274,16 @@ TEETH = frozenset(("teeth", "tooth", "zahn", "zaehne", "zähne", "dents", "wheel
 STONES = frozenset(("pallet", "pallets", "stone", "stones", "stein", "steine", "palette", "palettes", "teeth"))
 CLICKS = frozenset(("click", "pawl", "jumper", "nose", "beak", "klinke", "sperrklinke", "cliquet", "sautoir", "bec"))
 CAMS = frozenset(("cam", "came", "nocken", "kurvenscheibe", "snail", "schnecke", "limaçon"))
-ANCHORS = frozenset(("anchor", "anker", "ancre", "pendulum", "pendel", "pendule", "rod", "bob"))  # what swings a little only
+PENDULUMS = frozenset(("pendulum", "pendel", "pendule", "rod", "bob"))
+ANCHORS = PENDULUMS | {"anchor", "anker", "ancre"}  # what swings a little only
 FORK = frozenset(("fork", "horn", "horns", "gabel", "fourchette"))
 PIN = frozenset(("pin", "jewel", "impulse", "hebelstein"))
 GUARD = frozenset(("dart", "guard"))
 ROLLER = frozenset(("safety", "roller"))
 RESTING = frozenset(("resting", "repos", "ruhe"))  # the long teeth of a duplex wheel
-FACING = ((TEETH, STONES), (TEETH, CLICKS), (FORK, PIN), (GUARD, ROLLER), (RESTING, ROLLER))
+LEAVES = frozenset(("passing", "leaf", "goldfeder", "auslösefeder"))
+DISCHARGES = frozenset(("discharge", "discharging", "unlocking", "auslösestein", "dégagement"))
+FACING = ((LEAVES, DISCHARGES), (TEETH, STONES), (TEETH, CLICKS), (FORK, PIN), (GUARD, ROLLER), (RESTING, ROLLER))
 
 
 def tokens(name: str) -> list[str]:

@@ -30,6 +30,7 @@ DURATION = "5 s"
 TASKS = {
     "wheel": "the wheel",
     "lever": "the lever",
+    "passing": "the passing spring",
     "oscillator": "the oscillator",
     "click": "the click",
     "driver": "the driver",
@@ -125,6 +126,8 @@ def _body(plan: Plan, role: Role) -> Iterator[str]:
         yield plan.guess(f"{key}.section", height, "the section changes with the height; inspect lists where")
     touching = _touching(plan, role)
     layers = [drawing.layers[role.name, layer] for layer in role.part.layers]
+    if role.on is not None:
+        yield f"on = {_text(role.on.name)}"
     yield f"layers = {_texts([layer for layer in layers if layer in touching] or layers)}"
     if touching and (rest := [layer for layer in layers if layer not in touching]):
         yield f"draw = {_texts(rest)}"
@@ -152,8 +155,10 @@ def _body(plan: Plan, role: Role) -> Iterator[str]:
         yield 'motion = "slide"'
         why = "it cannot give way to the cam by turning about its pivot, which lies behind it: it is guided straight"
         yield plan.guess(f"{key}.axis", f"[{axis[0]:.6g}, {axis[1]:.6g}]", why)
-        mass = plan.amounts.mass[role.name]
+    mass = plan.amounts.mass.get(role.name)
+    if mass is not None:
         yield plan.guess(f"{key}.mass", _text(f"{1e3 * mass.value:.3g} g"), mass.why)
+    if axis is not None:
         return
     inertia = plan.amounts.inertia[role.name]
     yield plan.guess(f"{key}.inertia", _text(f"{1e10 * inertia.value:.3g} mg·cm²"), inertia.why)
@@ -192,14 +197,13 @@ def _forces(plan: Plan) -> Iterator[str]:
             yield plan.guess("springs.0.rest", _text(f"{math.degrees(plan.start.rest):.6g}°"), plan.start.rest_why)
         yield from ("", "[[damping]]", f"body = {_text(swinging.name)}")
         yield plan.guess("damping.0.q_factor", f"{amounts.q_factor.value:g}", amounts.q_factor.why)
-    for k, spring in enumerate(amounts.clicks):
+    for k, spring in enumerate(amounts.clicks, 0 if amounts.vph is None else 1):
         rest = plan.start.angles.get(spring.body, 0.0) + spring.way
         turned, slid = f"{1e6 * spring.stiffness.value:.3g} µN·m/rad", f"{1e-3 * spring.stiffness.value:.3g} N/mm"
         yield from ("", "[[springs]]", f"body = {_text(spring.body)}")
         yield plan.guess(f"springs.{k}.stiffness", _text(slid if spring.axis else turned), spring.stiffness.why)
-        why = "in the cam: it presses the follower on it" if spring.axis else "in the teeth: it presses the click on the wheel"
         place = _text(f"{1e3 * rest:.6g} mm" if spring.axis else f"{math.degrees(rest):.6g}°")
-        yield plan.guess(f"springs.{k}.rest", place, why)
+        yield plan.guess(f"springs.{k}.rest", place, spring.rest_why)
     if amounts.driven is not None and amounts.torque is not None and amounts.turned is None:
         value = plan.direction * amounts.torque.value
         yield from ("", "[[torques]]", f"body = {_text(amounts.driven)}")
@@ -262,10 +266,11 @@ class Proposal:
     left_out: tuple[str, ...]
     doubts: tuple[str, ...] = ()
     meets: bool = True  # off where no two parts of the drawings can meet, so that there is nothing to try
+    either_way: bool = False  # nothing in the drawing says which way its wheel turns
 
 
-def propose(paths: Sequence[Path]) -> Proposal:
-    """A scene from drawings of parts, or of a whole assembly.
+def propose(paths: Sequence[Path], way: int = 0) -> Proposal:
+    """A scene from drawings of parts, or of a whole assembly; `way` (±1) is how the wheel turns where its teeth do not say it.
 
     NothingToPropose where there is no closed outline, or where outlines have faults that no scene takes.
     """
@@ -279,9 +284,9 @@ def propose(paths: Sequence[Path]) -> Proposal:
     met, others = (named_facings(roles), []) if places else facings(roles, size)
     met = met or named_facings(roles)  # of a layout for cutting
     unlikely = [(facing, "the names of other surfaces of these bodies fit better") for facing in others]
-    lean, why = _direction(first_of(roles, WHEEL), {role.task for role in roles})
+    lean, why = _direction(first_of(roles, WHEEL), {role.task for role in roles}, way)
     start = start_of(roles, () if places else met, lean or -1)
-    amounts = amounts_of(roles, size, start.swing)
+    amounts = amounts_of(roles, size, start.swing, met)
     title = ", ".join(path.stem for path in paths)
     copies = drawn(sources, roles)
     plan = Plan(title, sources, copies, roles, met, unlikely, start, amounts, places, lean or -1, why, left_out)
@@ -298,7 +303,8 @@ def propose(paths: Sequence[Path]) -> Proposal:
         plan = replace(plan, facings=kept, others=[*plan.others, *gone], guesses=[])
     meets = any(not facing.by_name_alone for facing in plan.facings)
     sides = tuple((plan.side(*facing.sides[0]), plan.side(*facing.sides[1])) for facing in plan.facings)
-    return Proposal(files, tuple(plan.guesses), tuple(roles), sides, tuple(left_out), tuple(plan.doubts), meets)
+    either = not way and why == UNKNOWN_WAY and first_of(roles, OSCILLATOR) is not None
+    return Proposal(files, tuple(plan.guesses), tuple(roles), sides, tuple(left_out), tuple(plan.doubts), meets, either)
 
 
 def _pieces(sources: Sequence[Source]) -> tuple[list[Piece], list[str]]:
@@ -333,11 +339,15 @@ def _why_nothing(sources: Sequence[Source]) -> str:
     return "\n".join([*reasons, advice])
 
 
-def _direction(wheel: Role | None, tasks: set[str]) -> tuple[int, str]:
+UNKNOWN_WAY = "clockwise: the drawing does not say which way it is driven"
+
+
+def _direction(wheel: Role | None, tasks: set[str], tried: int) -> tuple[int, str]:
     """Which way the wheel is driven, 0 where the drawing does not say, and why: a click lets it turn against its teeth."""
     lean = lean_of(wheel.part) if wheel is not None else 0
     if not lean:
-        return 0, "clockwise: the drawing does not say which way it is driven"
+        words = "clockwise" if tried < 0 else "counter-clockwise"
+        return tried, f"{words}: the drawing does not say; tried both ways, it works this way only" if tried else UNKNOWN_WAY
     held = CLICK in tasks and OSCILLATOR not in tasks
     way = "clockwise" if (lean < 0) != held else "counter-clockwise"
     if held:

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.geometry.primitives import Point
-from watchsim.proposal.parts import Part, is_one_sided, teeth_of
+from watchsim.proposal.parts import Part, distance, is_one_sided, teeth_of
 from watchsim.proposal.pieces import (
     ANCHORS,
     CAMS,
@@ -24,6 +24,8 @@ from watchsim.proposal.pieces import (
     FIXED,
     LEVER,
     OSCILLATOR,
+    PASSING,
+    SAME,
     WHEEL,
     Floats,
     is_toothed,
@@ -105,14 +107,23 @@ def _inside(ring: Floats, points: Floats) -> NDArray[np.bool_]:
 FEWEST_TEETH = 8  # of an escape wheel; with fewer slots a wheel is driven step by step, as in a Geneva drive
 ROUNDISH = 0.4  # of its outlines on arcs about its pivot: a part that may turn through whole turns
 BY_NAME = "the names of its layers say so"
-NAMES = {WHEEL: "wheel", LEVER: "lever", OSCILLATOR: "balance", CLICK: "click", DRIVER: "driver", FIXED: "banking"}
+NAMES = {
+    WHEEL: "wheel",
+    LEVER: "lever",
+    PASSING: "passing",
+    OSCILLATOR: "balance",
+    CLICK: "click",
+    DRIVER: "driver",
+    FIXED: "banking",
+}
 
 
 @dataclass(eq=False)
 class Role:
-    """A part with its name and task: wheel, lever, oscillator, click, driver or fixed. `teeth` is 0 where it is no wheel.
+    """A part with its name and task: wheel, lever, passing, oscillator, click, driver or fixed; `teeth` of a wheel, else 0.
 
     `little`: an oscillator that swings between the teeth, as an anchor or a pendulum does, not all round like a balance.
+    `on`: what carries it, as a detent does its passing spring.
     """
 
     part: Part
@@ -121,6 +132,7 @@ class Role:
     why: str
     teeth: int = 0
     little: bool = False
+    on: Role | None = None
 
     @property
     def moves(self) -> bool:
@@ -162,10 +174,25 @@ def roles_of(parts: Sequence[Part]) -> list[Role]:
     levers = any(role.task == LEVER for role in found)
     for role in found:
         role.little = role.task == OSCILLATOR and bool(wheels) and not levers and _is_anchor(role.part)
-    order = [DRIVER, WHEEL, LEVER, OSCILLATOR, CLICK, FIXED]
+    _carry_passing(found)
+    order = [DRIVER, WHEEL, LEVER, PASSING, OSCILLATOR, CLICK, FIXED]
     found.sort(key=lambda role: order.index(role.task))
     _name(found)
     return found
+
+
+LIGHT = 0.3  # of the area of a detent: a passing spring has less
+
+
+def _carry_passing(roles: Sequence[Role]) -> None:
+    """Of two levers the light one that lies against the other is its passing spring, which a chronometer's detent carries."""
+    levers = sorted((role for role in roles if role.task == LEVER), key=lambda role: role.part.area)
+    if len(levers) != 2 or not any(role.task == OSCILLATOR for role in roles):
+        return
+    leaf, detent = levers
+    if leaf.part.area < LIGHT * detent.part.area and distance(leaf.part, detent.part) <= SAME:
+        leaf.task, leaf.on = PASSING, detent
+        leaf.why = "it lies against the other lever, and is much lighter"
 
 
 def _click(part: Part, rest: Sequence[Part], wheels: Sequence[Part]) -> str | None:

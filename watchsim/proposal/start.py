@@ -21,10 +21,24 @@ from watchsim.geometry.solids import section
 from watchsim.mechanism.overlap import placed
 from watchsim.proposal.facing import Facing, clearance, turns_fully
 from watchsim.proposal.parts import Part, nose_of, toothing
-from watchsim.proposal.pieces import CLICK, DRIVER, LEVER, OSCILLATOR, WHEEL, Floats, Piece, Source, ring, tokens
+from watchsim.proposal.pieces import (
+    CLICK,
+    DRIVER,
+    LEVER,
+    OSCILLATOR,
+    PASSING,
+    PENDULUMS,
+    WHEEL,
+    Floats,
+    Piece,
+    Source,
+    ring,
+    tokens,
+)
 from watchsim.proposal.roles import Role, first_of, plain
 
 STEEL = 7850.0  # kg/m³
+GRAVITY = 9.81  # m/s²
 WATCH = 40e-3  # m: what is larger is a clock
 THICKNESS = {True: 0.2e-3, False: 2e-3}  # m, of the parts of a watch, of a clock
 BALANCE = 1.2e-9  # kg·m²: 12 mg·cm², usual for a wristwatch
@@ -58,6 +72,7 @@ class ClickSpring:
     body: str
     stiffness: Amount
     way: float
+    rest_why: str
     axis: Point | None = None
 
 
@@ -75,7 +90,7 @@ class Amounts:
     turned: str | None = None  # the body that turns evenly, as a finger does that moves a star on against its jumper
 
 
-def amounts_of(roles: Sequence[Role], size: float, swing: float) -> Amounts:
+def amounts_of(roles: Sequence[Role], size: float, swing: float, met: Sequence[Facing] = ()) -> Amounts:
     """Inertias of all that moves, and what drives it."""
     watch = size < WATCH
     thick = THICKNESS[watch]
@@ -96,7 +111,12 @@ def amounts_of(roles: Sequence[Role], size: float, swing: float) -> Amounts:
         if driven is None:
             return Amounts(inertia, None, None, None, None, None, springs, None, mass, turned)
         return Amounts(inertia, None, None, torque, slow, driven, springs, None, mass, turned)
-    beats = Amount(BEATS[watch], f"usual for {'a watch' if watch else 'a clock'} of this size ({1e3 * size:.3g} mm)")
+    usual = f"usual for {'a watch' if watch else 'a clock'} of this size ({1e3 * size:.3g} mm)"
+    length = _hanging(swinging)[1] if inertia[swinging.name].why == plate else 0.0
+    by_gravity = f"as gravity swings what is drawn, like a simple pendulum of {1e3 * length:.4g} mm"
+    beats = (
+        Amount(round(3600.0 / math.pi * math.sqrt(GRAVITY / length), 1), by_gravity) if length else Amount(BEATS[watch], usual)
+    )
     q = Amount(Q_FACTOR[watch], "usual; the escapement's own losses come on top")
     torque_amount = None
     if wheel is not None and wheel.teeth:
@@ -105,8 +125,11 @@ def amounts_of(roles: Sequence[Role], size: float, swing: float) -> Amounts:
         value = loss / (SHARE * 2.0 * math.pi / wheel.teeth)
         why = f"it makes up for what the {swinging.name} loses at {math.degrees(swing):.3g}°, {SHARE:.0%} of it reaching it"
         torque_amount = Amount(value, why)
-    lift = _lift(swinging, wheel) if wheel is not None and lever is None else None
-    return Amounts(inertia, beats, q, torque_amount, None, driven, lift=lift)
+    between = any({facing.first.task, facing.second.task} == {WHEEL, LEVER} for facing in met)
+    lift = _lift(swinging, wheel) if wheel is not None and not between else None
+    carried = {role.name: Amount(STEEL * thick * role.part.area, plate) for role in roles if role.on is not None}
+    springs = _detent_springs(roles, met, torque_amount.value) if torque_amount is not None else ()
+    return Amounts(inertia, beats, q, torque_amount, None, driven, springs, lift, carried)
 
 
 FULL_LIFT = math.radians(40.0)  # of a balance that the wheel drives itself: cylinder 40°, duplex and detent more
@@ -157,8 +180,39 @@ def _clicks(roles: Sequence[Role], wheel: Role | None, torque: float) -> tuple[C
         over = "a tooth" if teeth is not None else under.name
         why = f"lifting it over {over} takes about {LIFTING:.0%} of the drive's work"
         axis = _away(role.part, under.part) if slides else None
-        found.append(ClickSpring(role.name, Amount(moment / bent, why), -bent if slides else nose.inward * bent, axis))
+        way = -bent if slides else nose.inward * bent
+        pressed = "in the cam: it presses the follower on it" if slides else "in the teeth: it presses the click on the wheel"
+        found.append(ClickSpring(role.name, Amount(moment / bent, why), way, pressed, axis))
     return tuple(found)
+
+
+DETENT, LEAF = 0.12, 0.016  # of the wheel's torque: the moments that hold a detent on its bank, and its passing spring on it
+
+
+def _detent_springs(roles: Sequence[Role], met: Sequence[Facing], torque: float) -> tuple[ClickSpring, ...]:
+    """Springs that press a detent on its bank and the passing spring on the detent."""
+    found = []
+    for leaf in (role for role in roles if role.on is not None):
+        for role, share, against in ((leaf.on, DETENT, "its bank"), (leaf, LEAF, leaf.on.name if leaf.on else "")):
+            way = pressing(role, met) if role is not None else 0
+            if role is not None and way:
+                why = f"usual: it presses with {share:.2g} of the wheel's torque"
+                stiffness = Amount(share * torque / BENT, why)
+                found.append(ClickSpring(role.name, stiffness, way * BENT, f"it presses {role.name} on {against}"))
+    return tuple(found)
+
+
+def pressing(role: Role, met: Sequence[Facing]) -> int:
+    """The way (+1 counter-clockwise) that turns a body into what carries it or stands still; 0: none."""
+    rests = [f for f in met if role in (f.first, f.second) and (role.on in (f.first, f.second) if role.on else _on_still(f))]
+    if not rests:
+        return 0
+    open_by = [clearance(rests, {role.name: side * NUDGE}) for side in (1, -1)]
+    return 0 if open_by[0] == open_by[1] else 1 if open_by[0] < open_by[1] else -1
+
+
+def _on_still(facing: Facing) -> bool:
+    return not (facing.first.moves and facing.second.moves)
 
 
 def _away(part: Part, cam: Part) -> Point:
@@ -198,6 +252,7 @@ def _driven(roles: Sequence[Role], wheel: Role | None, swinging: Role | None) ->
 FINE = 96  # steps of a pitch, and of the way to a bank
 MOST_BANK, USUAL_BANK = math.radians(20.0), math.radians(5.0)
 BACK = math.radians(0.1)  # short of touching
+NUDGE = math.radians(0.01)  # what is drawn touching is turned so far off
 
 
 def locked(
@@ -212,6 +267,7 @@ def locked(
     if wheel is None or swinging is None:
         return None
     why = {}
+    carried = first_of(roles, PASSING)
     if turns_fully(swinging):
         if lever is None:
             return None
@@ -219,6 +275,10 @@ def locked(
         reach = _first_touch(lambda angle: clearance(still, {**angles, lever.name: angle}), MOST_BANK) if still else USUAL_BANK
         angles = {**angles, lever.name: max(reach - BACK, 0.0)}
         why[lever.name] = "just before its bank, on the side from which the pin comes" if still else "as if at its bank"
+        if carried is not None:
+            angles[lever.name] = -NUDGE * pressing(lever, facings)
+            angles[carried.name] = -NUDGE * pressing(carried, facings)
+            why |= dict.fromkeys((lever.name, carried.name), "just off what it is drawn touching")
     own = [f for f in facings if wheel in (f.first, f.second)]
     free = _free_way(lambda angle: clearance(own, {**angles, wheel.name: direction * angle}), 2.0 * math.pi / wheel.teeth)
     if free is None:
@@ -392,7 +452,12 @@ def start_of(roles: Sequence[Role], facings: Sequence[Facing], direction: int) -
 def _rest(swinging: Role | None, lever: Role | None, facings: Sequence[Facing]) -> tuple[float, str]:
     """How far the balance must be turned for its pin to point at the lever."""
     drawn = "as it is drawn"
-    if swinging is None or not turns_fully(swinging) or lever is None or swinging.part.centre is None:
+    if swinging is None or swinging.part.centre is None:
+        return 0.0, drawn
+    if swinging.little:
+        tilt = _hanging(swinging)[0]
+        return (-tilt, "so that it hangs straight down; it is drawn aside") if AT_LEAST < abs(tilt) < ASIDE else (0.0, drawn)
+    if lever is None or any(facing.first.on or facing.second.on for facing in facings):
         return 0.0, drawn
     touching = {layer for facing in facings for role, layer in facing.sides if role is swinging}
     at = np.array(swinging.part.centre.at)
@@ -406,6 +471,25 @@ def _rest(swinging: Role | None, lever: Role | None, facings: Sequence[Facing]) 
     if abs(turn) <= AT_REST:
         return 0.0, f"{drawn}: its pin points at the lever"
     return turn, "so that its pin points at the lever"
+
+
+AT_LEAST, ASIDE = math.radians(0.02), math.radians(10.0)  # a pendulum drawn so far from hanging is drawn as it swings
+
+
+def _hanging(swinging: Role) -> tuple[float, float]:
+    """Of a pendulum: how far (rad) it is drawn from hanging straight down, and the length (m) of the simple one that beats so.
+
+    (0, 0) of what is called none, or is drawn another way than down the sheet.
+    """
+    part = swinging.part
+    if part.centre is None or not {word for layer in part.layers for word in tokens(layer)} & PENDULUMS:
+        return 0.0, 0.0
+    at = np.array(part.centre.at)
+    areas = np.array([piece.area for piece in part.pieces])
+    middle = areas @ np.array([piece.centroid for piece in part.pieces]) / areas.sum() - at
+    tilt, away = math.atan2(middle[0], -middle[1]), float(np.hypot(*middle))
+    polar = sum(abs(section(piece.loops).about(part.centre.at).polar) for piece in part.pieces)
+    return (tilt, polar / (areas.sum() * away)) if abs(tilt) < ASIDE else (0.0, 0.0)
 
 
 def _is_pin(piece: Piece, centre: np.ndarray) -> bool:

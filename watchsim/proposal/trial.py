@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import tempfile
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from watchsim.analysis.summary import summary
 from watchsim.analysis.verdict import verdict
+from watchsim.proposal.propose import Proposal, propose
 from watchsim.scene.load import load
 from watchsim.scene.roles import swings
 from watchsim.simulation.simulate import simulate
@@ -21,12 +24,29 @@ PATIENCE = 10.0  # s: a mechanism that takes longer to compute is left to its us
 STILL = 1e-6  # rad or m: what moves less in all that time does not move
 
 
+def tried(paths: Sequence[Path]) -> Proposal:
+    """What drawings suggest, with what a run of it shows among the doubts.
+
+    Where nothing says which way the wheel turns, it is the way in which it works. NothingToPropose as for `propose`.
+    """
+    found = propose(paths)
+    if not found.meets:
+        return found
+    if found.either_way:
+        ways = [(one, *_run(one.files)) for one in (propose(paths, way) for way in (-1, 1))]
+        works = [one for one, wrong, drives in ways if drives and not wrong]
+        if len(works) == 1:
+            return works[0]
+    return replace(found, doubts=(*found.doubts, *_run(found.files)[0]))
+
+
 class _TakesLong(Exception):
     pass
 
 
-def trial(files: Mapping[str, bytes]) -> list[str]:
-    """Sentences on what does not work in the first seconds of the scene among those files; none where all does."""
+def _run(files: Mapping[str, bytes]) -> tuple[list[str], bool]:
+    """Sentences on what does not work in the first seconds of the scene among those files, none where all does, and whether the
+    wheel drives the oscillator: it may tick and take from the swing all the same."""
     began = time.monotonic()
 
     def progress(_now: float, _end: float) -> None:
@@ -38,21 +58,22 @@ def trial(files: Mapping[str, bytes]) -> list[str]:
             (Path(folder) / name).write_bytes(data)
         scene = load(Path(folder) / "scene.toml")
         try:
-            return list(_wrong(simulate(scene, SECONDS, progress=progress, to_the_end=False)))
+            run = simulate(scene, SECONDS, progress=progress, to_the_end=False)
         except _TakesLong:
-            return [f"a trial of {SECONDS:g} s takes long and was broken off: whether it works is not known"]
+            return [f"a trial of {SECONDS:g} s takes long and was broken off: whether it works is not known"], False
+    numbers = summary(run)
+    return list(_wrong(run, numbers)), (numbers["efficiency"] or 0.0) > 0.0
 
 
-def _wrong(run: Trajectory) -> Iterator[str]:
-    tried = f"in a trial of {SECONDS:g} s"
-    found, judged = summary(run), verdict(run)
+def _wrong(run: Trajectory, found: Mapping[str, Any]) -> Iterator[str]:
+    tried, judged = f"in a trial of {SECONDS:g} s", verdict(run)
     if not judged.works:
         yield f"{tried} it does not work: {judged.message}"
         return
     if swings(run.scene) and found["amplitude_deg"] is None and found["timing_message"]:
         yield f"{tried} it keeps no time: {found['timing_message']}"
-    if not found["impacts"] and len(run.scene.bodies) > 1:
-        yield f"{tried} nothing strikes anything: no part drives another one"
+    if not (run.events["contact"] >= 0).any() and len(run.scene.bodies) > 1:
+        yield f"{tried} nothing touches anything: no part drives another one"
         return
     still = [
         body.name for body in run.scene.bodies if body.name in run.slices and np.ptp(run.q[:, run.slices[body.name]]) < STILL
