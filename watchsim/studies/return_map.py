@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from watchsim.analysis.verdict import OUTSIDE
 from watchsim.analysis.verdict_kinds import BACKWARDS, KNOCKS, STOPS, TRIPS, UNSETTLED
+from watchsim.simulation.knock_tally import OUTSIDE
 from watchsim.simulation.state import EventKind, State
 from watchsim.simulation.trajectory import Array
 from watchsim.studies.cycle import Measures, measures
