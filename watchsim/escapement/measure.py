@@ -157,7 +157,8 @@ def measure(scene: Scene, compiled: Compiled | None = None, few: int | None = No
     missing: list[tuple[str, str]] = []
     hands = Hands(compiled)
     whole = pitch(scene, parts.wheel)
-    toothed = None if whole is None else teeth(scene, parts.wheel) or Teeth(whole, 0.0, 0.0)
+    numbered = None if few else teeth(scene, parts.wheel)  # of alike teeth it does not matter which one is which
+    toothed = None if whole is None else numbered or Teeth(whole, 0.0, 0.0)
     if toothed is None or not len(parts.to_wheel):
         why = f"{parts.wheel} has no equal teeth" if toothed is None else f"{parts.wheel} and {parts.lever} never touch"
         return Function(parts, missing=(("geometry of function", why),))
