@@ -563,6 +563,19 @@ def test_few_pictures_use_the_width_and_slow_bodies_have_degrees_per_second() ->
     assert ws.verdict(run).message is None or "watch" not in ws.verdict(run).message
 
 
+def test_pictures_of_a_lever_that_is_carried_round_go_with_it() -> None:
+    run = ws.simulate(ws.load(ws.profiles_dir() / "tourbillon"), duration=3.0)  # the carriage turns by 18°
+    instants = [one.t for beat in shown_beats(run, rubbed=False)[-2:] for one in key_instants.key_instants(beat)]
+    pictures = [axes for axes in ws.plot_timeline(run).axes if not axes.get_xticks().size and axes.axison]
+    body = run.scene.body("lever")
+    (left, right), (low, high) = pictures[0].get_xlim(), pictures[0].get_ylim()
+    for t in instants:
+        x, y, angle = run.pose("lever", t)
+        for px, py in (loop.edges[0].point(0.0) for loop in body.loops):
+            c, s = math.cos(angle), math.sin(angle)
+            assert left < 1e3 * (x + c * px - s * py) < right and low < 1e3 * (y + s * px + c * py) < high
+
+
 def test_what_goes_to_and_fro_too_often_is_drawn_as_its_envelope() -> None:
     t = np.linspace(0.0, 100.0, 40_001)
     swell = 1.0 + 0.5 * np.sin(0.06 * t)

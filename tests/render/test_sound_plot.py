@@ -10,6 +10,7 @@ import pytest
 from render.fake_runs import watch_run
 
 import watchsim as ws
+from watchsim.mechanism.compile import compile_scene
 from watchsim.simulation.state import EventKind
 
 STEP = 2e-3  # s
@@ -30,10 +31,16 @@ def test_the_curve_is_the_sound_and_names_are_those_of_the_impacts(tmp_path: Pat
     file_envelope = np.array([np.abs(heard[round((a - 0.3) * rate) :][: round(STEP * rate)]).max() for a in edges])
     assert np.corrcoef(drawn, file_envelope)[0, 1] > 0.99
     impacts = run.events[run.events["kind"] == EventKind.IMPACT]
-    pairs = {run.pairs[int(k)] for k in impacts["contact"]}
-    known = {frozenset((f"{one.body_a} {one.layer_a}", f"{one.body_b} {one.layer_b}")) for one in pairs}
-    named = [frozenset(text.get_text().split(" / ")) for text in axes.texts]
-    assert len(named) >= 3 and set(named) <= known
+    roles = {"FORK": "fork", "PIN": "roller jewel", "ARMS": "lever", "PINS": "banking", "TEETH": "wheel"}
+    compiled, known = compile_scene(run.scene), set()
+    for contact in {int(number) for number in impacts["contact"]}:
+        sides = (int(compiled.model.contacts[contact][side]) for side in ("a", "b"))
+        where = {compiled.layers[side]: float(compiled.model.primitives[side].px) for side in sides}
+        # The wheel turns clockwise below the lever: its teeth come from the left.
+        stone = "entry stone" if where.get("STONES", 0.0) < 0.0 else "exit stone"
+        known.add(" / ".join(sorted(roles.get(layer, stone) for layer in where)))
+    named = {" / ".join(sorted(text.get_text().split(" / "))) for text in axes.texts}
+    assert len(named) >= 3 and named <= known
 
 
 def test_silence_is_refused() -> None:

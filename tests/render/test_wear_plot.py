@@ -56,7 +56,7 @@ def test_a_line_that_is_slid_over_has_the_colour_of_its_load(tmp_path: Path) -> 
 def test_panels_are_stones_and_one_tooth_of_all() -> None:
     run = ws.simulate("profiles/swiss_lever", 1.0)
     titles = [axes.get_title() for axes in ws.plot_wear(run).axes if axes.get_title()]
-    assert {"lever, entry stone", "lever, exit stone", "balance, PIN", "lever, FORK"} <= set(titles)
+    assert {"lever, entry stone", "lever, exit stone", "balance, roller jewel", "lever, fork", "banking"} <= set(titles)
     assert sum("tooth" in title for title in titles) == 1
     with pytest.raises(ValueError, match="no step of the run"):
         ws.plot_wear(run, (5.0, 6.0))

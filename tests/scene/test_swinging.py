@@ -33,6 +33,7 @@ from watchsim.scene.roles import (
     partners,
     roles,
     swings,
+    touching,
     with_anchor,
 )
 from watchsim.scene.scene import Body, Gear, Geared, Prescribed, Scene
@@ -464,3 +465,17 @@ def test_poise_error_in_four_positions(down):
     law = 86400.0 * 50e-6 * 9.81 * (x * down[0] + y * down[1]) / stiffness * j1(swing) / swing
     assert abs(law) > 0.3
     assert cycle.rate_s_per_d - poised.rate_s_per_d == pytest.approx(law, rel=0.01)
+
+
+def test_what_a_coaxial_escapement_touches_itself_with_is_named_by_roles() -> None:
+    scene = ws.load(ws.profiles_dir() / "coaxial")
+    assert set(touching(scene, with_anchor(scene))) == {
+        ("balance", "IMPULSE_STONE", "impulse stone"),
+        ("lever", "IMPULSE_STONE", "impulse stone"),
+        ("balance", "PIN", "roller jewel"),
+        ("lever", "FORK", "fork"),
+        ("balance", "SAFETY", "safety roller"),
+        ("lever", "GUARD", "guard pin"),
+        ("banking", "PINS", "banking"),
+        ("lever", "ARMS", "lever"),
+    }

@@ -119,13 +119,6 @@ def pair_name(run: Trajectory, contact: int) -> str:
     return "-".join(sorted((pair.body_a, pair.body_b), key=[body.name for body in run.scene.bodies].index))
 
 
-def pair_layers(run: Trajectory, contact: int) -> tuple[str, str]:
-    """The two bodies of a contact with their layers, in the order of the scene."""
-    pair, order = run.pairs[contact], [body.name for body in run.scene.bodies]
-    first, second = sorted(((pair.body_a, pair.layer_a), (pair.body_b, pair.layer_b)), key=lambda side: order.index(side[0]))
-    return f"{first[0]} {first[1]}", f"{second[0]} {second[1]}"
-
-
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(5)
 QUIET = 1e-12  # of the forces that act: an acceleration that they explain to this owes nothing to contacts
 NODES, WEIGHTS = 0.5 * (NODES + 1.0), 0.5 * WEIGHTS

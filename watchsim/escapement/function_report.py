@@ -12,6 +12,7 @@ from watchsim.escapement.fork_and_pin import Fork, Quantity, Safety
 from watchsim.escapement.impulses import Impulse, Pallet
 from watchsim.escapement.measure import Function
 from watchsim.scene.scene import Scene
+from watchsim.units import signed
 
 # Each rule names its source; what is broken is a finding with the value, the limit and what to do.
 
@@ -387,7 +388,7 @@ def _fork_tables(function: Function) -> Iterator[Table]:
 
 
 def _degrees_words(value: float) -> str:
-    return "never" if math.isinf(value) else "-" if math.isnan(value) else f"{round(math.degrees(value), 3) + 0.0:.3f}°"
+    return "never" if math.isinf(value) else "–" if math.isnan(value) else f"{signed(math.degrees(value), 3)}°"
 
 
 def _worst_tooth(pair: list[Quantity]) -> str:

@@ -156,6 +156,7 @@ def strip(entries: Sequence[tuple[str, float, int]], unit: str, description: str
 
 MARGIN = 0.04
 ASIDE = 0.3  # of a part's width: the most that the whole beside it takes
+PEN = 2.7e-3  # of the height, the lines of outlines: 0.9 pixels of a printed picture
 MOST_POSTER = 150_000  # characters of path data; more than that is left to the player
 MM = 1e3
 COIL = 1e-3  # of its size, that a chord may stray from a hairspring
@@ -174,21 +175,22 @@ def poster(run: Trajectory, window: Window, parts: tuple[Part, ...], t: float) -
     pad = MARGIN * max(right - left, top - bottom)
     c, s = math.cos(seen.turn), math.sin(seen.turn)
     place = (c, -s, -s, -c, MM * (pad - left), MM * (pad + top))
-    groups = []
+    width, height = MM * (right - left + 2.0 * pad), MM * (top - bottom + 2.0 * pad)
+    pen, groups = PEN * height, []
     for number, (part, data) in enumerate(zip(parts, drawn, strict=True)):
         look = LIGHT.worn(part.finish)
         shape = element("path", d=data, fill="none" if part.ground else look.fill, stroke=look.edge)
         groups.append(element("g", shape, transform=_matrix(*_pose(frames[part.body])), data_part=number))
     coils, pale = [], mixed(BLUED.line, LIGHT.background, PALE_PICTURE_STYLE)
     for number, spring in enumerate(hairsprings(run.scene)):
-        line, wide = _points(spring.line(frames, spring.coil.chords(COIL * spring.coil.outer))), f"{MM * spring.coil.width:.4g}"
+        line = _points(spring.line(frames, spring.coil.chords(COIL * spring.coil.outer)))
+        wide = f"{max(MM * spring.coil.width, pen):.4g}"
         coils.append(element("path", d=line, fill="none", stroke=pale, stroke_width=wide, data_coil=number))
     lines = [
         element("path", d=_points(spring.line(frames)), fill="none", stroke=BLUED.line, data_zigzag=number)
         for number, spring in enumerate(zigzags(run.scene))
     ]
-    width, height = MM * (right - left + 2.0 * pad), MM * (top - bottom + 2.0 * pad)
-    drawing = element("g", *coils, *groups, *lines, transform=_matrix(*place), id="drawn")
+    drawing = element("g", *coils, *groups, *lines, transform=_matrix(*place), id="drawn", stroke_width=f"{pen:.4g}")
     aside = 0.0
     if close:
         aside, whole = _beside(_box(run, window, seen, frames, False), place, width, height)

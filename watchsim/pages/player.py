@@ -16,7 +16,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from watchsim.analysis.flows import pair_layers
 from watchsim.analysis.forces import Forces, forces, just_before
 from watchsim.analysis.phases import Phase
 from watchsim.analysis.sound import blows
@@ -27,7 +26,7 @@ from watchsim.render.marks import ContactMarks, goes_round
 from watchsim.render.movie import busy
 from watchsim.render.opening import CLOSER, touching_room
 from watchsim.render.palette import BLUED, FIXED, Finish, looks
-from watchsim.render.part_names import part_names
+from watchsim.render.part_names import Met, part_names
 from watchsim.render.parts import Part, is_round, loops_of, outline, parts, spoke
 from watchsim.render.rows import kept_rows, off_line
 from watchsim.render.view import (
@@ -322,27 +321,26 @@ def instants(run: Trajectory, window: Window) -> list[list[Any]]:
         chosen = np.zeros(len(times), bool)
         chosen[np.argsort(-loud, kind="stable")[:MOST_MOMENTS]] = True
         events, times = events[chosen[place]], times[chosen]
-    names = [body.name for body in run.scene.bodies]
+    names, met = [body.name for body in run.scene.bodies], Met(run)
     starts = np.searchsorted(events["t"], times)
     return [
-        [float(t), _words(run, events[i:j], names)]
+        [float(t), _words(met, events[i:j], names)]
         for t, (i, j) in zip(times, pairwise([*starts.tolist(), len(events)]), strict=True)
     ]
 
 
-def _words(run: Trajectory, events: Any, names: list[str]) -> str:
-    found = list(dict.fromkeys(_one(run, event, names) for event in events))
+def _words(met: Met, events: Any, names: list[str]) -> str:
+    found = list(dict.fromkeys(_one(met, event, names) for event in events))
     more = len(found) - NAMED
     return "; ".join(found[:NAMED]) + (f"; {more} more" if more > 0 else "")
 
 
-def _one(run: Trajectory, event: Any, names: list[str]) -> str:
+def _one(met: Met, event: Any, names: list[str]) -> str:
     kind = EventKind(int(event["kind"]))
     if event["contact"] < 0:
         return f"{names[event['body']]}: {WORDS[kind]}" if event["body"] >= 0 else WORDS[kind]
-    met = " / ".join(pair_layers(run, int(event["contact"])))
     lost = f", {metric(float(event['energy_lost']), 'J', 2)} lost" if kind == EventKind.IMPACT else ""
-    return f"{met}: {WORDS[kind]}{lost}"
+    return f"{met.words(int(event['contact']), float(event['t']))}: {WORDS[kind]}{lost}"
 
 
 def heard(run: Trajectory, window: Window) -> dict[str, str]:

@@ -116,7 +116,8 @@ def _worn(run: Trajectory) -> Markup:
     except ValueError:
         return Markup("")
     words = "Archard's index of the last beats as colour along the outlines that slide on each other"
-    return section("wear", "What wears", image(small_png(figure, WORN_DOTS), words, WORN_DOTS))
+    shown = image(small_png(figure, WORN_DOTS), words, WORN_DOTS)
+    return section("wear", "What wears", element("div", shown, class_="scroll", tabindex=0, role="region", aria_label=words))
 
 
 def _lead(run: Trajectory, span: Window) -> str:

@@ -20,7 +20,7 @@ from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
-from matplotlib.ticker import ScalarFormatter, StrMethodFormatter
+from matplotlib.ticker import ScalarFormatter
 
 from watchsim.analysis.phases import Phase
 from watchsim.render import style
@@ -226,12 +226,9 @@ def _limits(axes: Axes, values: Array, angle: bool) -> None:
         style.ticks(axes.yaxis, 9, [1, 1.5, 1.8, 3, 3.6, 4.5, 6, 9, 10])
     else:
         style.ticks(axes.yaxis, 5)
-    if high - low > 10.0:
-        axes.yaxis.set_major_formatter(StrMethodFormatter("{x:,.0f}"))
-    else:
-        plain = ScalarFormatter(useOffset=high - low <= 1e-4 * max(abs(low), abs(high)))
-        plain.set_scientific(False)
-        axes.yaxis.set_major_formatter(plain)
+    plain = ScalarFormatter(useOffset=high - low <= 1e-4 * max(abs(low), abs(high)))
+    plain.set_scientific(False)
+    axes.yaxis.set_major_formatter(plain)
 
 
 LEFT, RIGHT, UNDER, OVER = 16.0, 3.5, 9.0, 5.0  # mm, around a panel

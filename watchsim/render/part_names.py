@@ -15,20 +15,19 @@ from matplotlib.path import Path
 from matplotlib.transforms import IdentityTransform
 from scipy.optimize import linear_sum_assignment
 
+from watchsim.analysis.timeline import pallet_side
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Point
-from watchsim.geometry.solids import mass_properties
 from watchsim.mechanism.compile import compile_scene
 from watchsim.render.marks import STONES, PalletStones
 from watchsim.render.palette import Style
 from watchsim.render.parts import LastingPatch, loops_of, pose_matrix
 from watchsim.render.view import Frame, Pixels, hairsprings, seen
 from watchsim.render.words import Words
-from watchsim.scene.roles import Roles, drive_direction, with_anchor
-from watchsim.scene.scene import Body, Scene
-from watchsim.simulation.trajectory import Array, frames
+from watchsim.scene.roles import Roles, corners_of, drive_direction, layer_of, middle_of, touching, with_anchor
+from watchsim.scene.scene import Scene
+from watchsim.simulation.trajectory import Array, Trajectory, frames
 
-OFF_PIVOT = 0.3  # of a layer's reach: a pin's middle is farther from the pivot, that of a roller is not
 ALONE = 0.5  # of all the lever's outlines by length: a shorter one is a stone of its own, a longer one carries its pallets
 
 
@@ -90,7 +89,7 @@ def _pallets(scene: Scene, found: Roles) -> Iterator[PartName]:
             if alone and found.lever != found.oscillator
             else "pallet"
         )
-        yield PartName(name.replace("stone", kind), lever.name, _middle([loop]) if alone else place)
+        yield PartName(name.replace("stone", kind), lever.name, middle_of([loop]) if alone else place)
 
 
 def _by_sides(scene: Scene, found: Roles) -> Iterator[PartName]:
@@ -101,7 +100,7 @@ def _by_sides(scene: Scene, found: Roles) -> Iterator[PartName]:
         sides = {side.body: side.layer for side in contact.sides}
         other = next((name for name in sides if found.wheel in sides and name != found.wheel), None)
         if other is not None and found.lever in (other, scene.body(other).on):
-            places += [(other, _middle([loop])) for loop in _layer(scene.body(other), sides[other])]
+            places += [(other, middle_of([loop])) for loop in layer_of(scene.body(other), sides[other])]
     if len(places) != len(STONES):
         return
     compiled = compile_scene(scene)
@@ -118,21 +117,52 @@ def _by_sides(scene: Scene, found: Roles) -> Iterator[PartName]:
 
 def _touching(scene: Scene, found: Roles) -> Iterator[PartName]:
     """Fork and pin, guard and roller, banking, and stones that the wheel pushes besides the pallets."""
-    for contact in scene.contacts:
-        sides = {side.body: side for side in contact.sides}
-        layers = {name: _layer(scene.body(name), side.layer) for name, side in sides.items()}
-        fixed = next((name for name in sides if scene.body(name).motion == "fixed"), None)
-        if fixed is not None and found.lever in sides:
-            yield from (PartName("banking", fixed, _middle([loop])) for loop in layers[fixed])
-        elif {found.lever, found.oscillator} == set(sides) and found.lever and found.oscillator:
-            own, other = layers[found.oscillator], layers[found.lever]
-            is_pin = math.hypot(*_middle(own)) > OFF_PIVOT * _reach(own)
-            yield PartName(
-                "roller jewel" if is_pin else "safety roller", found.oscillator, _middle(own) if is_pin else _edge(own)
-            )
-            yield PartName("horn" if is_pin else "guard pin", found.lever, _tip(other))
-        elif found.wheel in sides and found.oscillator in sides and found.lever not in (None, found.oscillator):
-            yield PartName("impulse stone", found.oscillator, _middle(layers[found.oscillator]))
+    for body, layer, text in touching(scene, found):
+        loops = layer_of(scene.body(body), layer)
+        if text == "banking":
+            yield from (PartName(text, body, middle_of([loop])) for loop in loops)
+        elif text == "fork":
+            yield PartName("horn", body, _tip(loops))
+        elif text == "guard pin":
+            yield PartName(text, body, _tip(loops))
+        elif body != found.lever:
+            yield PartName(text, body, _edge(loops) if text == "safety roller" else middle_of(loops))
+
+
+class Met:
+    """What meets what in the contacts of a run, by roles such as "wheel / entry stone"; without one by body and layer."""
+
+    def __init__(self, run: Trajectory) -> None:
+        self._run, self._parts, self._compiled = run, with_anchor(run.scene), compile_scene(run.scene)
+        self._names = {(body, layer): text for body, layer, text in touching(run.scene, self._parts)}
+        kinds = [one.text.split()[1] for one in part_names(run.scene) if one.text.startswith("entry ")]
+        self._kind, self._order = (kinds or ["stone"])[0], [body.name for body in run.scene.bodies]
+        self._known: dict[int, str] = {}
+
+    def words(self, contact: int, time: float) -> str:
+        """Of a contact that closed at that time (s)."""
+        if contact not in self._known:
+            pair = self._run.pairs[contact]
+            sides = ((pair.body_a, pair.layer_a), (pair.body_b, pair.layer_b))
+            named = sorted(sides, key=lambda side: self._order.index(side[0]))
+            bodies = {body for body, _ in named}
+            self._known[contact] = " / ".join(self._name(*side, bodies, contact, time) for side in named)
+        return self._known[contact]
+
+    def _name(self, body: str, layer: str, bodies: set[str], contact: int, time: float) -> str:
+        wheel, lever = self._parts.wheel, self._parts.lever
+        known = self._names.get((body, layer), self._names.get((body, None)))
+        if known is not None and (wheel not in bodies or known == "impulse stone"):
+            return known
+        if wheel is None or lever is None or self._parts.oscillator is None:
+            return f"{body} {layer}"
+        if body == wheel:
+            return "wheel"
+        if body == lever and wheel in bodies:
+            met = self._compiled.model.contacts[contact]
+            stone = next(side for side in (int(met.a), int(met.b)) if self._compiled.owners[side] == body)
+            return f"{pallet_side(self._run, self._compiled, self._parts, stone, time)} {self._kind}"
+        return f"{body} {layer}"
 
 
 def _studs(scene: Scene) -> Iterator[PartName]:
@@ -144,32 +174,14 @@ def _studs(scene: Scene) -> Iterator[PartName]:
             yield PartName("stud", None, (px + x, py + y))
 
 
-def _layer(body: Body, layer: str | None) -> list[Loop]:
-    return [loop for loop in body.loops if layer is None or loop.layer == layer]
-
-
-def _middle(loops: list[Loop]) -> Point:
-    """The centre of the face; of an open outline the middle of its first edge."""
-    closed = [loop for loop in loops if loop.closed]
-    return mass_properties(closed, 1.0, 1.0).centre if closed else loops[0].edges[0].point(0.5)
-
-
-def _corners(loops: Sequence[Loop]) -> list[Point]:
-    return [edge.point(share) for loop in loops for edge in loop.edges for share in (0.0, 0.5)]
-
-
-def _reach(loops: list[Loop]) -> float:
-    return max(math.hypot(*point) for point in _corners(loops))
-
-
 def _tip(loops: Sequence[Loop]) -> Point:
     """What lies farthest from the pivot: the end of a fork, of a guard pin."""
-    return max(_corners(loops), key=lambda point: math.hypot(*point))
+    return max(corners_of(loops), key=lambda point: math.hypot(*point))
 
 
 def _edge(loops: list[Loop]) -> Point:
     """A point of a roller's rim."""
-    return min(_corners(loops), key=lambda point: point[1])
+    return min(corners_of(loops), key=lambda point: point[1])
 
 
 # The page places names in the same way (pages/assets/names.js).

@@ -252,7 +252,8 @@ def plot_timeline(
     rows = [-(-len(one) // across) for one in instants]
     heights = [TITLE + count * (tall + WORDS) + LEADS + CURVES + TIME for count in rows]
     made = style.figure(width, style.HEADING + sum(heights), ax=ax)
-    style.heading(made, run.scene.title, f"Amid each phase; arrows: contact forces on the {' and '.join(_pushed_bodies(run))}")
+    what = "arrows: contact forces" if width >= style.NARROW else "forces"
+    style.heading(made, run.scene.title, f"Amid each phase; {what} on the {' and '.join(_pushed_bodies(run))}")
     posed = Posed(run.scene, compile_scene(run.scene))
     drawn, top = iter(arrows), style.HEADING
     for beat, own, count, height in zip(beats_shown, instants, rows, heights, strict=True):
@@ -287,10 +288,11 @@ Box = tuple[float, float, float, float]
 def _box(run: Trajectory, times: Sequence[float]) -> Box:
     """Least and largest x, least and largest y (mm) of what can touch of the lever at the start, with room around it.
 
-    Of a balance or pendulum that the wheel touches itself at `times` (s), since it turns further.
+    Of a balance or pendulum that the wheel touches itself at `times` (s), since it turns further, and of what is carried round.
     """
     parts = with_anchor(run.scene)
-    instants = np.array(times) if parts.lever == parts.oscillator else run.t[:1]
+    carried = parts.lever is not None and run.scene.body(parts.lever).on is not None
+    instants = np.array(times) if carried or parts.lever == parts.oscillator else run.t[:1]
     found, close = [], 1e-3 * max(compile_scene(run.scene).size, 1e-9)
     for name in _pushed_bodies(run):
         body = run.scene.body(name)

@@ -11,12 +11,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from watchsim.analysis.flows import pair_layers
 from watchsim.analysis.sound import TONES, blows
 from watchsim.analysis.timeline import RESTING
 from watchsim.render import style
 from watchsim.render.force_plot import beat_spans
 from watchsim.render.marks import clock
+from watchsim.render.part_names import Met
 from watchsim.render.phase_plots import name_key, names_in, shade
 from watchsim.render.rows import reduced
 from watchsim.render.view import Window
@@ -92,10 +92,10 @@ def _wave(times: Array, loud: Array, span: Window) -> tuple[Array, Array]:
 def _met(run: Trajectory, times: Array) -> list[str]:
     """What met what at those instants: the pair that lost most energy in an impact."""
     events = rows_where(run.events, lambda part: (part["kind"] == EventKind.IMPACT) & np.isin(part["t"], times))
-    found = []
+    found, met = [], Met(run)
     for t in times.tolist():
         own = events[events["t"] == t]
-        found.append(" / ".join(pair_layers(run, int(own["contact"][np.argmax(own["energy_lost"])]))))
+        found.append(met.words(int(own["contact"][np.argmax(own["energy_lost"])]), t))
     return found
 
 

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 from numpy.typing import NDArray
 
 from watchsim.analysis.wear import CELLS, TOOTH, Wear, cell_ends, wear
@@ -18,11 +19,12 @@ from watchsim.model import CORNER
 from watchsim.render import style
 from watchsim.render.palette import FAINT, INK
 from watchsim.simulation.trajectory import Trajectory
+from watchsim.units import metric
 
 Array = NDArray[np.float64]
-ACROSS, MOST = 3, 6  # panels
+MOST, WIDE = 6, 42.0  # panels; mm, of one with its caption
 STONE = " stone"  # its faces share a panel
-TALL, FOOT = 54.0, 22.0  # mm, of a row of panels, and of title, names and scale
+TALL, FOOT = 0.95, 31.0  # of a panel's width; mm, of title, names and scale
 DECADES = 1e3  # below the most: less counts as least
 THICK, POINTS = 3.2, 26.0  # pt, and pt² of a corner
 ROOM = 0.25  # of what wears, around it
@@ -44,10 +46,14 @@ def plot_wear(
         raise ValueError("nothing slides there under a load, so nothing wears")
     cells = {side: _along(found, compiled, side) for sides in groups.values() for side in sides}
     most = max((float(own.max()) for own in cells.values() if len(own)), default=0.0) or 1.0
-    norm, rows = LogNorm(most / DECADES, most), -(-len(groups) // ACROSS)
-    made = style.figure(width, TALL * rows + FOOT, layout="constrained", ax=ax)
-    made.suptitle(style.cut(f"{run.scene.title}: wear"), x=0.01, ha="left", fontsize=style.TITLE, weight="bold", color=INK)
-    panels = made.subplots(rows, min(ACROSS, len(groups)), squeeze=False)
+    across = max(min(3, int(width / WIDE), len(groups)), 1)
+    norm, rows = LogNorm(most / DECADES, most), -(-len(groups) // across)
+    made = style.figure(width, TALL * min(width / across, 0.4 * style.FULL) * rows + FOOT, layout="constrained", ax=ax)
+    style.heading(made, f"{run.scene.title}: wear", "What slides under load, along the outlines (mm); rings: at corners")
+    engine = made.get_layout_engine()
+    if isinstance(engine, ConstrainedLayoutEngine):
+        engine.set(rect=(0.0, 0.0, 1.0, 1.0 - (style.HEADING + 2.0) / style.size_mm(made)[1]))
+    panels = made.subplots(rows, across, squeeze=False)
     for axes, (name, sides) in zip(panels.flat, groups.items(), strict=False):
         _panel(axes, name, sides, (found, compiled, cells), norm)
     for axes in list(panels.flat)[len(groups) :]:
@@ -55,7 +61,7 @@ def plot_wear(
     scale = LineCollection([], cmap=style.MAP, norm=norm)
     bar = made.colorbar(scale, ax=panels, location="bottom", shrink=0.6, aspect=50, pad=0.02)
     bar.ax.tick_params(labelsize=style.TICK, colors=INK)
-    bar.set_label("load × sliding distance in a year, N·m for each mm of outline", fontsize=style.LABEL, color=INK)
+    bar.set_label("load × sliding distance in a year, N·m per mm of outline", fontsize=style.LABEL, color=INK)
     return made
 
 
@@ -68,7 +74,7 @@ def _groups(found: Wear) -> dict[str, list[int]]:
     teeth = [key for key in index if key[1].startswith(TOOTH)]
     left_out = set(teeth) - {max(teeth, key=index.__getitem__)} if teeth else set()
     ranked = sorted((key for key in index if key not in left_out), key=lambda key: -index[key])
-    return {f"{body}, {place}": sums[body, place] for body, place in ranked[:MOST]}
+    return {f"{body}, {place}" if body != place else body: sums[body, place] for body, place in ranked[:MOST]}
 
 
 def _along(found: Wear, compiled: Compiled, side: int) -> Array:
@@ -106,10 +112,11 @@ def _panel(axes: Any, name: str, sides: list[int], what: tuple[Wear, Compiled, d
     axes.set_ylim(middle[1] - half, middle[1] + half)
     axes.set_title(name, fontsize=style.LABEL, color=INK)
     whole = found.in_a_year(sum(float(found.along[side].sum()) for side in sides))
-    words = f"{whole:.3g} N·m a year"
+    words = f"{metric(whole, 'N·m', 3)} a year"
     if corners:
-        words += f", {found.in_a_year(sum(float(found.along[side].sum()) for side in corners)):.3g} at corners"
-    axes.set_xlabel(f"{words}; mm", fontsize=style.SMALL, color=INK)
+        there = found.in_a_year(sum(float(found.along[side].sum()) for side in corners)) / whole
+        words += f", {100.0 * there:.0f} % at corners"
+    axes.set_xlabel(words, fontsize=style.SMALL, color=INK)
     style.ticks(axes.xaxis, 3)
     style.ticks(axes.yaxis, 3)
     axes.tick_params(labelsize=style.TICK, colors=INK)

@@ -8,10 +8,12 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
+from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Point
+from watchsim.geometry.solids import mass_properties
 from watchsim.scene.forces import Side, Spring
 from watchsim.scene.scene import Body, Scene
 from watchsim.scene.teeth import FEWEST_TEETH, teeth_of, train
@@ -328,3 +330,49 @@ def drive_direction(scene: Scene, name: str) -> float:
             mean = sum(value for _, value in torque.table) / len(torque.table) if torque.table else torque.value
             total += ratios[torque.body] * mean
     return -1.0 if total < 0.0 else 1.0
+
+
+# With what do lever, oscillator and banking touch each other? Names of layers are as free as those of bodies.
+
+OFF_PIVOT = 0.3  # of a layer's reach: a pin's middle is farther from the pivot, that of a roller is not
+
+
+def touching(scene: Scene, found: Roles) -> Iterator[tuple[str, str | None, str]]:
+    """Body, layer and name of what bodies meet each other with, besides teeth and pallets."""
+    lever, own = found.lever, found.oscillator
+    if lever is None or own is None:
+        return
+    contacts = [{side.body: side.layer for side in contact.sides} for contact in scene.contacts]
+    pushed = [sides[lever] for sides in contacts if {found.wheel, lever} == set(sides)]
+    most = max((len(layer_of(scene.body(lever), layer)) for layer in pushed), default=0)
+    for sides in contacts:
+        fixed = next((name for name in sides if scene.body(name).motion == "fixed"), None)
+        if fixed is not None and lever in sides:
+            yield from ((fixed, sides[fixed], "banking"), (lever, sides[lever], "lever"))
+        elif {lever, own} == set(sides):
+            loops = layer_of(scene.body(own), sides[own])
+            is_pin = math.hypot(*middle_of(loops)) > OFF_PIVOT * reach_of(loops)
+            yield own, sides[own], "roller jewel" if is_pin else "safety roller"
+            yield lever, sides[lever], "fork" if is_pin else "guard pin"
+        elif found.wheel in sides and own in sides and lever != own:
+            yield own, sides[own], "impulse stone"
+        elif found.wheel in sides and lever in sides and len(layer_of(scene.body(lever), sides[lever])) == 1 < most:
+            yield lever, sides[lever], "impulse stone"  # one beside the two that lock, as in a co-axial escapement
+
+
+def layer_of(body: Body, layer: str | None) -> list[Loop]:
+    return [loop for loop in body.loops if layer is None or loop.layer == layer]
+
+
+def middle_of(loops: list[Loop]) -> Point:
+    """The centre of the face; of an open outline the middle of its first edge."""
+    closed = [loop for loop in loops if loop.closed]
+    return mass_properties(closed, 1.0, 1.0).centre if closed else loops[0].edges[0].point(0.5)
+
+
+def corners_of(loops: Sequence[Loop]) -> list[Point]:
+    return [edge.point(share) for loop in loops for edge in loop.edges for share in (0.0, 0.5)]
+
+
+def reach_of(loops: list[Loop]) -> float:
+    return max(math.hypot(*point) for point in corners_of(loops))
