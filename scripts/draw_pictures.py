@@ -146,7 +146,7 @@ EXHIBITS = (
     Exhibit(
         "tall.gif",
         "The same, for a phone",
-        "A tall picture has its insets above, and its strip of angle and velocity below; here on dark ground.",
+        "A tall picture has its insets above, and its strip of angle and velocity below; here with a dark background.",
         f"watchsim movie swiss {BEAT} --speed adaptive --length 4s --fps 12 --size 450x800 --dark --phases --strip "
         '--inset "entry stone" --inset "exit stone" -o tall.gif',
     ),

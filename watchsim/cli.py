@@ -30,7 +30,13 @@ class CommandParser(argparse.ArgumentParser):
         if several is not None:  # argparse takes those before the first option only
             setattr(found, several.dest, [*(getattr(found, several.dest) or ()), *unknown])
         elif unknown:
-            self.error(f'unexpected argument "{unknown[0]}". Put quotes around a value that contains spaces.')
+            changes = "=" in unknown[0] and "--set" in self._option_string_actions
+            cure = (
+                f'Each change has its own --set: --set "{unknown[0]}"'
+                if changes
+                else "Put quotes around a value that contains spaces"
+            )
+            self.error(f'unexpected argument "{unknown[0]}". {cure}.')
         return found, []
 
     def _check(self, word: str) -> None:

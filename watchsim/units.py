@@ -94,6 +94,8 @@ _PREFIXABLE: dict[str, Unit] = {
     "s": Unit(Fraction(1), 0, (0, 0, 1, 0, 0)),
     "N": Unit(Fraction(1), 0, (1, 1, -2, 0, 0)),
     "Nm": Unit(Fraction(1), 0, (2, 1, -2, 0, 0)),
+    "Ncm": Unit(Fraction(1, 100), 0, (2, 1, -2, 0, 0)),
+    "Nmm": Unit(Fraction(1, 1000), 0, (2, 1, -2, 0, 0)),
     "J": Unit(Fraction(1), 0, (2, 1, -2, 0, 0)),
     "Pa": Unit(Fraction(1), 0, (-1, 1, -2, 0, 0)),
     "Hz": Unit(Fraction(1), 0, (0, 0, -1, 0, 0)),

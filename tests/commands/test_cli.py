@@ -15,7 +15,10 @@ from interpreter import ROOT as COPY
 from interpreter import python
 
 from watchsim.cli import COMMANDS, main
+from watchsim.commands.inputs import load_scene
 from watchsim.results.folder import read_results
+from watchsim.scene.load import load
+from watchsim.studies.axes import axes_from_texts
 
 ROOT = Path(__file__).resolve().parents[2]
 LEVER = ROOT / "profiles" / "bench_lever" / "scene.toml"
@@ -77,17 +80,36 @@ def test_inspect_draws_no_picture_of_what_it_cannot_read(tmp_path: Path, capsys:
     assert "there is no such file" in capsys.readouterr().out and not (tmp_path / "lost.png").exists()
 
 
-def test_a_dimension_without_its_table_and_a_file_in_place_of_a_folder_are_put_right(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    lever = str(ROOT / "profiles/swiss_lever")
+def test_a_file_in_place_of_a_folder_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["export", str(ROOT / "profiles/swiss_lever"), "-o", str(tmp_path / "all.dxf")]) == 2
+    assert "a folder is needed" in capsys.readouterr().err and not (tmp_path / "all.dxf").exists()
+
+
+def test_a_dimension_of_a_design_goes_by_its_own_name(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """As `new --slots` and `improve slots=` call it; a scene without a design has none."""
     assert main(["new", "geneva", "-o", str(tmp_path / "a")]) == 0
-    for words, said in (
-        (["run", str(tmp_path / "a"), "--set", "slots=5"], 'Did you mean "design.slots"?'),
-        (["export", lever, "-o", str(tmp_path / "all.dxf")], "a folder is needed"),
-    ):
-        assert main(words) == 2
-        assert said in capsys.readouterr().err and not (tmp_path / "all.dxf").exists()
+    assert load_scene(str(tmp_path / "a"), ["slots=5"]).source == load_scene(str(tmp_path / "a"), ["design.slots=5"]).source
+    assert load(tmp_path / "a").set("slots", 5).source["design"]["slots"] == "5"
+    scene = load(tmp_path / "a")
+    (axis,) = axes_from_texts(scene, ["slots=4,5"])
+    assert axis.key == "design.slots"
+    capsys.readouterr()
+    assert main(["run", str(tmp_path / "a"), "--set", "slosts=5"]) == 2
+    assert "unknown key" in capsys.readouterr().err
+    assert main(["run", str(LEVER), "--set", "slots=5"]) == 2
+    assert "unknown key" in capsys.readouterr().err
+
+
+def test_an_assignment_without_its_option_is_put_right(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["run", str(LEVER), "--set", "torques.0.value=1 µN·m", "bodies.wheel.angle=1°"])
+    assert '--set "bodies.wheel.angle=1°"' in capsys.readouterr().err
+
+
+def test_one_unit_serves_both_ends_of_a_sweep() -> None:
+    scene = load(LEVER)
+    found = [axes_from_texts(scene, [f"torques.0.value={text}"]) for text in ("-0.8:-1.4 µN·m:3", "-0.8:-1.4:3 µN·m")]
+    assert found[0] == found[1] and found[0][0].values == pytest.approx((-0.8e-6, -1.1e-6, -1.4e-6))
 
 
 def test_check_counts_pairs_and_knows_the_frequency(capsys: pytest.CaptureFixture[str]) -> None:

@@ -179,7 +179,7 @@ def test_the_command_prints_the_fixed_names_resumes_and_makes_a_page(
 BAD = [
     (["--positions", "CH,13H"], '"13H" is no position'),
     (["--positions", ","], "name at least one"),
-    (["--temperatures", "warm"], "write numbers with commas between them, such as 8,23,38"),
+    (["--temperatures", "warm"], "write numbers separated by commas, such as 8,23,38"),
     (["--temperatures", "warm", "--positions", "13H"], '"13H" is no position'),
     (["--temperatures", "23,300"], "must lie between −60 °C and 120 °C"),
     (["--wound", "0,24"], "needs a mainspring"),

@@ -16,8 +16,8 @@ from watchsim.analysis.escape_wheel import missed_beats, never_touched, standsti
 from watchsim.analysis.flows import efficiency
 from watchsim.analysis.headlines import beats_csv, doubts, headlines, phases_csv
 from watchsim.analysis.timegrapher import timegrapher
-from watchsim.analysis.timing import Averages, averages, beats, last_window, whole_run
-from watchsim.analysis.verdict import verdict
+from watchsim.analysis.timing import Averages, Beats, averages, beats, last_window, whole_run
+from watchsim.analysis.verdict import RUNS_THROUGH, verdict
 from watchsim.analysis.verdict_kinds import NOTHING, Verdict
 from watchsim.mechanism.check import notes
 from watchsim.results.folder import versions
@@ -222,7 +222,7 @@ def summary(run: Trajectory) -> dict[str, Any]:
     (share of the drive's work that reaches the oscillator).
     """
     numbers: dict[str, Any] = {**_about(run), "bodies": _bodies(run), **_counts(run), **_timing(run)}
-    numbers["efficiency"] = efficiency(run)
+    numbers["efficiency"] = None if _keeps_nothing_going(run, numbers["verdict_message"]) else efficiency(run)
     numbers["expect"] = judged(run.scene.expect, numbers)
     numbers["warnings"] = list(doubts(run))
     numbers["notes"] = [finding.message for finding in notes(run.scene)]
@@ -301,20 +301,28 @@ def _timing(run: Trajectory) -> dict[str, Any]:
         return {**values, "timing_message": why_no_timing(run, None, values)}
     found = beats(run)
     window = last_window(run, found.nominal_period)
-    stands = standstill(run, found)
-    idle = never_touched(run)
+    stands, judged = standstill(run, found), verdict(run, found)
+    idle = _keeps_nothing_going(run, judged.message)
     values = _timing_of(None if idle else averages(found, window))
     return {
         **values,
         "timing_message": idle or why_no_timing(run, found, values, window[0]),
         "beats": found.before + len(found),
         "whole_run": whole_run(run, found),
-        "timegrapher": timegrapher(run, found, window),
-        "missed_beats": _missed(run),
+        "timegrapher": None if idle else timegrapher(run, found, window),
+        "missed_beats": None if idle else _missed(run, found),
         "stopped": stands is not None,
         "stopped_message": stands.message if stands else None,
-        **_judgement(verdict(run, found)),
+        **_judgement(judged),
     }
+
+
+def _keeps_nothing_going(run: Trajectory, judged: str | None) -> str | None:
+    """Why amplitude and rate are not those of a watch: nothing touched, or the wheel runs through; None where it may be one."""
+    parts, idle = roles(run.scene), never_touched(run)
+    if idle is None and judged and RUNS_THROUGH in judged:
+        return f"no amplitude and rate of a watch: nothing locks {parts.wheel}, and {parts.oscillator} swings by itself"
+    return idle
 
 
 def _judgement(found: Verdict) -> dict[str, Any]:
@@ -337,5 +345,6 @@ def _timing_of(means: Averages | None) -> dict[str, Any]:
     }
 
 
-def _missed(run: Trajectory) -> int | None:
-    return missed_beats(run) if roles(run.scene).wheel and keeps_time(run.scene) else None
+def _missed(run: Trajectory, found: Beats) -> int | None:
+    wheel = roles(run.scene).wheel
+    return missed_beats(run, wheel, found) if wheel and keeps_time(run.scene) else None

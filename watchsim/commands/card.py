@@ -14,7 +14,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("run_folder", metavar="RUN", help="a results folder")
     parser.add_argument("--time", metavar="TIME", help='the instant shown, such as "1.234 s" (default: in the last impulse)')
     parser.add_argument("--gif", action="store_true", help="the last oscillation in 5 s, slow where things happen")
-    parser.add_argument("--dark", action="store_true", help="on dark ground")
+    parser.add_argument("--dark", action="store_true", help="with a dark background")
     parser.add_argument("-o", "--output", metavar="FILE", help="file.png or file.gif (default RUN/card.png, RUN/card.gif)")
 
 

@@ -27,13 +27,16 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--png",
         metavar="FILE",
-        help="where to write a picture of the start position, what can ever touch in colour; of an escapement also "
-        "FILE_function.png, its geometry of function; of a scene with tolerances FILE_tolerances.png",
+        help="where to write a picture of the start position, what can ever touch in colour; for an escapement also "
+        "FILE_function.png, its geometry of function; for a scene with tolerances FILE_tolerances.png",
     )
-    parser.add_argument("--dark", action="store_true", help="pictures, sheet and movie on dark ground")
+    parser.add_argument("--dark", action="store_true", help="pictures, sheet and movie with a dark background")
     parser.add_argument("--sheet", metavar="FILE", help="where to write the geometry of function alone (.png, .svg or .pdf)")
     parser.add_argument(
-        "--width", metavar="LENGTH", default="170 mm", help='of that sheet (default "%(default)s", or "85 mm" for a column)'
+        "--width",
+        metavar="LENGTH",
+        default="170 mm",
+        help='width of that sheet (default "%(default)s", or "85 mm" for a column)',
     )
     parser.add_argument(
         "--turn", action="store_true", help="turn the mechanism by hand, without forces: what meets what at which angle"
@@ -50,7 +53,7 @@ def run(args: argparse.Namespace) -> int:
     _check_options(args)
     from watchsim.commands.inputs import load_scene, secured_file
     from watchsim.drawing.findings import Finding
-    from watchsim.escapement.function_report import draw_left, judgements, statics, text
+    from watchsim.escapement.function_report import judgements, statics, text
     from watchsim.escapement.measure import measure
     from watchsim.mechanism.check import check_report, check_text, modelled_pairs
     from watchsim.mechanism.compile import compile_scene
@@ -99,7 +102,7 @@ def run(args: argparse.Namespace) -> int:
     if args.json:
         print_json(report)
     else:
-        print(check_text(report, scene, [*text(function), *draw_left(scene, function)]))
+        print(check_text(report, scene, text(function)))
         if turned is not None:
             print(turned)
     if wrong:

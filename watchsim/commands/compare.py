@@ -37,7 +37,7 @@ def run(args: argparse.Namespace) -> int:
     if target is not None and target.suffix[1:] not in FORMATS and target.suffix not in ENDINGS:
         raise InputError(f"-o {target}: the name ends in .html for a page, or for a plot in one of .{', .'.join(FORMATS)}.")
     if len(args.sources) < 2:
-        raise InputError("compare: name two results folders or scenes at least.")
+        raise InputError("compare: name at least two results folders or scenes.")
     if target is not None:
         secured_file(target, "the plots")
     announce_compile()

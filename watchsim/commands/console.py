@@ -235,7 +235,7 @@ def add_study_options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--workers", metavar="N", type=int, help="processes (default: as many as there are processors)")
     parser.add_argument("--scheduler", metavar="ADDRESS", help="of dask.distributed, such as tcp://127.0.0.1:8786")
-    parser.add_argument("--resume", action="store_true", help="go on with what the results folder holds")
+    parser.add_argument("--resume", action="store_true", help="continue with what the results folder holds")
     parser.add_argument("--force", action="store_true", help="replace the study in a results folder that exists")
     parser.add_argument("--no-plots", action="store_true", help="write no plots")
     parser.add_argument("--json", action="store_true", help="print one JSON object")

@@ -1,4 +1,4 @@
-"""watchsim export SCENE: bodies for other programs: outlines as DXF and SVG, solids as GLB and STL; a run moves in its GLB."""
+"""watchsim export SCENE: bodies for other programs: outlines as DXF and SVG, solids as GLB and STL; the GLB of a run moves."""
 
 from __future__ import annotations
 
@@ -31,19 +31,27 @@ def options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("-o", "--output", metavar="DIR", help="folder for the files (default export/NAME)")
     parser.add_argument("--format", metavar="NAMES", default=",".join(FORMATS), help="default %(default)s")
-    parser.add_argument("--bodies", metavar="NAMES", help="only these bodies, with commas between them")
+    parser.add_argument("--bodies", metavar="NAMES", help="only these bodies, separated by commas")
     parser.add_argument(
-        "--thickness", metavar="LENGTH", default="0.2 mm", help='of layers whose solids say none (default "%(default)s")'
+        "--thickness",
+        metavar="LENGTH",
+        default="0.2 mm",
+        help='thickness of layers without one in the scene (default "%(default)s")',
     )
     parser.add_argument(
-        "--deviation", metavar="LENGTH", default="0.2 µm", help='of chords from arcs in GLB and STL (default "%(default)s")'
+        "--deviation",
+        metavar="LENGTH",
+        default="0.2 µm",
+        help='how far chords may lie from arcs in GLB and STL (default "%(default)s")',
     )
     parser.add_argument(
         "--window",
         metavar="FROM:TO",
-        help="of a results folder: what scene.glb plays (default: the last beats, or the whole run)",
+        help="for a results folder: what scene.glb plays (default: the last beats, or the whole run)",
     )
-    parser.add_argument("--speed", metavar="X", help="at which it plays: 1 is real time (default 1/20; a whole run in 10 s)")
+    parser.add_argument(
+        "--speed", metavar="X", help="speed at which it plays: 1 is real time (default 1/20; a whole run in 10 s)"
+    )
     parser.add_argument("--json", action="store_true", help="print what was written as one JSON object")
     parser.add_argument("--force", action="store_true", help="replace an export that exists")
 
@@ -63,7 +71,8 @@ def run(args: argparse.Namespace) -> int:
     folder = Path(args.output) if args.output else Path("export") / _name(scene)
     if folder.suffix[1:].lower() in FORMATS:
         raise InputError(
-            f"-o {folder}: a folder is needed, for a file of each body. --format {folder.suffix[1:]} writes these only."
+            f"-o {folder}: a folder is needed, since each body has a file of its own. "
+            f"--format {folder.suffix[1:]} writes these only."
         )
     secured_folder(folder, "exported files", default=not args.output)
     replaced = _check_folder(folder.absolute(), args.force)
@@ -167,7 +176,7 @@ def _contents(
         raise InputError(
             f"{thin.layer} of {thin.body} is {1e3 * thin.thickness:g} mm thick: a solid of less than "
             f"{1e9 * THINNEST:g} nm has no "
-            "sides. Mend the thickness in its solids or of --thickness, or leave solids out with --format dxf,svg."
+            "sides. Correct the thickness in its solids or --thickness, or leave solids out with --format dxf,svg."
         )
     if "glb" in formats:
         from watchsim.render.keyframes import bends, placed_solids, ribbons

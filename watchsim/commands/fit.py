@@ -60,7 +60,7 @@ def run(args: argparse.Namespace) -> int:
     if folder is not None:
         secured_folder(folder, "the fitted scene")
     announce_compile()
-    progress = Progress("scenes looked at:")
+    progress = Progress("scenes evaluated:")
     try:
         found = fit(
             scene, args.measured, knobs, tolerance=args.tol, workers=args.workers, scheduler=args.scheduler,
@@ -102,7 +102,7 @@ def text(found: Fit) -> str:
         lines.append(f"  scatter of {name.replace('_', ' ')}: {scatter:.3g} {unit.replace('deg', '°')}")
     lines += [f"  {found.message}"] if found.message else []
     return "\n".join(
-        [*lines, f"  {found.measured.count} readings, {found.evaluations} scenes looked at in {found.wall_s:.2g} s"]
+        [*lines, f"  {found.measured.count} readings, {found.evaluations} scenes evaluated in {found.wall_s:.2g} s"]
     )
 
 

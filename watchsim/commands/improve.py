@@ -34,7 +34,9 @@ HELP = "the better watch: goals, limits, and what holds it back"
 def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("scene", metavar="SCENE", help="a scene file (TOML), or the folder that holds scene.toml")
     parser.add_argument("keys", metavar="KEY=FROM:TO", nargs="*", help="what may be changed, and between which limits")
-    parser.add_argument("--vary", metavar="KEY", action="append", default=[], help="the same without limits")
+    parser.add_argument(
+        "--vary", metavar="KEY", action="append", default=[], help="a number that may be changed without limits"
+    )
     parser.add_argument(
         "--goal", metavar="GOAL", action="append", default=[], help='such as "amplitude max", "torque min", "amplitude = 290°"'
     )
@@ -45,7 +47,9 @@ def options(parser: argparse.ArgumentParser) -> None:
         default="auto",
         help="auto, slsqp, nelder-mead or differential-evolution (default %(default)s)",
     )
-    parser.add_argument("--starts", metavar="N", type=int, default=1, help="so many searches, from elsewhere each")
+    parser.add_argument(
+        "--starts", metavar="N", type=int, default=1, help="number of searches, each from another starting point"
+    )
     parser.add_argument("--points", metavar="N", type=int, default=9, help="designs on a front (default %(default)s)")
     parser.add_argument("-o", "--output", metavar="DIR", help="write the better scene there, with its drawings")
     parser.add_argument("--duration", metavar="TIME", help='judge by the end of a run of that length instead, such as "60 s"')
@@ -53,7 +57,9 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--tol", "--tolerance", metavar="X", type=float, help="relative error per step (default: the scene's, 1e-9)"
     )
-    parser.add_argument("--workers", metavar="N", type=int, default=1, help="processes, worth it for differential-evolution")
+    parser.add_argument(
+        "--workers", metavar="N", type=int, default=1, help="processes; more than one pays off with differential-evolution"
+    )
     parser.add_argument("--scheduler", metavar="ADDRESS", help="of dask.distributed, such as tcp://127.0.0.1:8786")
     parser.add_argument("--force", action="store_true", help="replace a folder that exists")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
@@ -78,7 +84,7 @@ def run(args: argparse.Namespace) -> int:
     if folder is not None:
         secured_folder(folder, "the better scene")
     announce_compile()
-    progress = Progress("designs looked at:")
+    progress = Progress("designs evaluated:")
     try:
         better = improve(
             scene, knobs, args.goal, args.keep, method=args.method, starts=args.starts, points=args.points, duration=duration,
@@ -139,12 +145,12 @@ def text(better: Better) -> str:
         lines += ["", "  front", *columns(_front(better))]
     lines += [f"  held back by {words}" for words in better.active]
     if better.found and not better.active and any(one.is_goal for one in better.goals) and not better.front:
-        lines.append("  no limit holds it back: it is the best between them")
+        lines.append("  no limit holds it back: it is the best within them")
     lines += [f"  {better.message}"] if better.message else []
     if better.starts[0] > 1:
-        lines.append(f"  {better.starts[1]} of {better.starts[0]} searches end in this design or its equals")
+        lines.append(f"  {better.starts[1]} of {better.starts[0]} searches end in this design or an equivalent one")
     without = f", {better.without} of them do not work and count as worse than any that do" if better.without else ""
-    return "\n".join([*lines, f"  {better.evaluations} designs looked at in {better.wall_s:.2g} s{without}"])
+    return "\n".join([*lines, f"  {better.evaluations} designs evaluated in {better.wall_s:.2g} s{without}"])
 
 
 def _front(better: Better) -> list[list[str]]:

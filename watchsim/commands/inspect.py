@@ -32,8 +32,10 @@ HELP = "read a drawing: units, size, layers, loops, lines, arcs, faults"
 def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", metavar="FILE", help="a DXF or SVG drawing, or a solid: STL, OBJ, GLB, 3MF or STEP")
     parser.add_argument("--units", metavar="UNIT", help="read lengths in this unit (mm, inch, ...) whatever the file says")
-    parser.add_argument("--layer", metavar="NAMES", help="only these layers, with commas between them")
-    parser.add_argument("--snap", metavar="LENGTH", help='join ends that lie this close, such as "2 µm" (default 1 µm)')
+    parser.add_argument("--layer", metavar="NAMES", help="only these layers, separated by commas")
+    parser.add_argument(
+        "--snap", metavar="LENGTH", help='join ends that are this close together, such as "2 µm" (default 1 µm)'
+    )
     parser.add_argument("--fit", metavar="LENGTH", help='follow splines and ellipses this closely by arcs (default "0.1 µm")')
     parser.add_argument("--section", metavar="HEIGHT", help='cut a solid at this height along its z axis, such as "0.15 mm"')
     parser.add_argument("--json", action="store_true", help="print one JSON object instead of text")

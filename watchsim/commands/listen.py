@@ -23,7 +23,7 @@ LABEL = 13
 
 def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", metavar="FILE.wav", help="a recording of any width, rate and number of channels")
-    parser.add_argument("--lift-angle", metavar="ANGLE", default="52°", help="of the watch (default %(default)s)")
+    parser.add_argument("--lift-angle", metavar="ANGLE", default="52°", help="lift angle of the watch (default %(default)s)")
     parser.add_argument(
         "--vph", metavar="N", type=float, help="vibrations per hour of its train (default: the nearest usual one)"
     )

@@ -16,7 +16,7 @@ MISSING = "live needs a server that is not installed here ({}): pip install 'wat
 
 def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("scene", metavar="SCENE", help="a scene file (TOML), or the folder that holds scene.toml")
-    parser.add_argument("--port", metavar="N", type=int, default=0, help="of the page's address (default: one that is free)")
+    parser.add_argument("--port", metavar="N", type=int, default=0, help="port of the page's address (default: a free one)")
     parser.add_argument("--no-browser", action="store_true", help="only print the address")
 
 
@@ -31,7 +31,7 @@ def run(args: argparse.Namespace) -> int:
     if not path.is_file():
         raise InputError(f"{args.scene}: there is no such scene file.")
     if not 0 <= args.port <= 65535:
-        raise InputError(f"--port {args.port}: a port lies between 1 and 65535; 0 takes one that is free.")
+        raise InputError(f"--port {args.port}: a port lies between 1 and 65535; 0 takes a free one.")
     try:
         live = Live(path, args.port)
     except OSError as error:

@@ -9,12 +9,12 @@ from pathlib import Path
 from watchsim.commands.console import FINE, MISSED, InputError, say
 from watchsim.commands.tolerance import show
 
-HELP = "shards of a study (watchsim tolerance --shard) made one"
+HELP = "combine the shards of a study (watchsim tolerance --shard)"
 
 
 def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("studies", metavar="STUDY", nargs="+", help="results folders of watchsim tolerance")
-    parser.add_argument("-o", "--output", metavar="DIR", required=True, help="results folder of the whole")
+    parser.add_argument("-o", "--output", metavar="DIR", required=True, help="results folder of the combined study")
     parser.add_argument("--force", action="store_true", help="replace a study that exists there")
     parser.add_argument("--no-plots", action="store_true", help="write no plots")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
@@ -36,6 +36,6 @@ def run(args: argparse.Namespace) -> int:
         done = merge(args.studies, folder)
         show(done, folder, args.no_plots, args.json)
     if not done.whole:
-        say("Samples are missing between these: the shards are not all there, or not finished.")
+        say("Samples are missing: not all shards are there, or some are not finished.")
         return MISSED
     return FINE

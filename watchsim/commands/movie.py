@@ -27,7 +27,7 @@ def options(parser: argparse.ArgumentParser) -> None:
         metavar="WxH",
         help='pixels, such as 1280x720; "auto": wide, square or tall, as the mechanism is drawn',
     )
-    parser.add_argument("--dark", action="store_true", help="on dark ground")
+    parser.add_argument("--dark", action="store_true", help="with a dark background")
     parser.add_argument(
         "--sound", action="store_true", help="the ticking, each blow when it is shown, with its own pitch at any speed (MP4)"
     )
@@ -41,7 +41,7 @@ def options(parser: argparse.ArgumentParser) -> None:
         nargs="?",
         const=True,
         default=False,
-        help="its angle and velocity (default: the oscillator's)",
+        help="a strip with its angle and velocity (default: the oscillator's)",
     )
     parser.add_argument(
         "--inset",
@@ -54,7 +54,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--zoom",
         metavar="NAMES",
-        help='frame only these bodies, with commas between them, or "all" (default: what touches, the whole small beside it)',
+        help='frame only these bodies, separated by commas, or "all" (default: what touches, the whole small beside it)',
     )
     parser.add_argument("-o", "--output", metavar="FILE", help="file.mp4 or file.gif (default RUN/movie.mp4)")
 

@@ -40,7 +40,10 @@ def _common(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--list", action="store_true", default=unset, help="list designs, or the dimensions of a design")
     parser.add_argument("--json", action="store_true", default=unset, help="print one JSON object instead of text")
     parser.add_argument(
-        "--force", action="store_true", default=unset, help="change the scene of a folder that exists; what is not given stays"
+        "--force",
+        action="store_true",
+        default=unset,
+        help="change the scene in an existing folder; what is not given stays as it is",
     )
     written_out = (
         "write drawings (DXF) and the whole scene, to be edited by hand, in place of a scene that holds the dimensions"
@@ -180,7 +183,7 @@ def _write(design: Design, given: dict[str, object], asked: dict[str, Any]) -> N
     if same:
         say(f"Kept as it was in {path}: {', '.join(f'{one.name} = {drawn.dimensions[one.name]}' for one in same)}.")
     if kept is not None and drawings:
-        say("All else that it said was replaced by the design's own scene.")
+        say("Everything else in it was replaced by the design's own scene.")
     if not drawings:
         say(f"Its dimensions stand in {path}; --set design.NAME=VALUE tries another one.")
     say(f"watchsim run {folder} simulates it; watchsim check {folder} --png start.png shows it.")

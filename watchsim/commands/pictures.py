@@ -257,7 +257,7 @@ def turned_by_hand(
     if swing is not None:
         found = swinging(scene)
         if found is None:
-            raise InputError(f'--swing "{swing}": nothing swings in this scene; its wheel is led by one pitch.')
+            raise InputError(f'--swing "{swing}": nothing swings in this scene; its wheel is turned by one pitch.')
         way = parse_positive("--swing", swing, ANGLE if scene.body(found.body).motion == "pivot" else LENGTH)
     turned = turn(scene, way)
     if picture:

@@ -29,13 +29,13 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--bodies",
         metavar="NAMES",
-        help=f"only these bodies, with commas between them, or {ALL} (default: the first {FIRST})",
+        help=f"only these bodies, separated by commas, or {ALL} (default: the first {FIRST})",
     )
     parser.add_argument(
         "--quantities",
         metavar="NAMES",
         default="angle,velocity",
-        help="of kinematics: angle, velocity, acceleration, with commas (default %(default)s)",
+        help="of kinematics: angle, velocity, acceleration, separated by commas (default %(default)s)",
     )
     parser.add_argument("--tape", action="store_true", help="the same as --kind tape: the paper of a timegrapher")
     parser.add_argument(
@@ -45,10 +45,12 @@ def options(parser: argparse.ArgumentParser) -> None:
         "--phases", action="store_true", help="as --kind phases, and tables of motion and energy on the standard output"
     )
     parser.add_argument(
-        "--width", metavar="LENGTH", default="170 mm", help='as printed (default "%(default)s", or "85 mm" for a column)'
+        "--width", metavar="LENGTH", default="170 mm", help='printed width (default "%(default)s", or "85 mm" for a column)'
     )
-    parser.add_argument("--dark", action="store_true", help="on dark ground")
-    parser.add_argument("--format", metavar="NAMES", default="png", help="png, svg, pdf, with commas (default %(default)s)")
+    parser.add_argument("--dark", action="store_true", help="with a dark background")
+    parser.add_argument(
+        "--format", metavar="NAMES", default="png", help="png, svg, pdf, separated by commas (default %(default)s)"
+    )
     parser.add_argument(
         "-o", "--output", metavar="FILE", help="the file, ending optional; a folder for several kinds (default RUN/plots)"
     )
@@ -88,7 +90,7 @@ def run(args: argparse.Namespace) -> int:
             print(path)
         drawn += 1
     if not drawn:
-        raise InputError(f"none of {', '.join(kinds)} can be drawn of this run.")
+        raise InputError(f"none of {', '.join(kinds)} can be drawn for this run.")
     return FINE
 
 

@@ -1,7 +1,7 @@
 """watchsim positions SCENE: what a timing machine shows of the watch in all positions, wound and a day later, cold and warm.
 
 Each reading is the limit cycle in that state. Mean and differences (X, D, DVH), the poise error of the balance as a poising
-tool finds it, and the criteria of ISO 3159 follow. Where 12 h lies and what warmth does, the scene says under [watch].
+tool finds it, and the criteria of ISO 3159 follow. The scene's [watch] says where 12 o'clock lies and what temperature does.
 """
 
 from __future__ import annotations
@@ -75,7 +75,7 @@ def _numbers(option: str, text: str | None, faults: list[str]) -> list[float] | 
     try:
         return [float(part) for part in text.replace("−", "-").split(",")]
     except ValueError:
-        faults.append(f'{option} "{text}": write numbers with commas between them, such as 8,23,38')
+        faults.append(f'{option} "{text}": write numbers separated by commas, such as 8,23,38')
         return None
 
 

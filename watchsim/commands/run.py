@@ -57,23 +57,29 @@ def options(parser: argparse.ArgumentParser) -> None:
         help='what to keep: all, events, statistics, "every 10", or a window "179 s:180 s"; may be given several times',
     )
     parser.add_argument("--duration", metavar="TIME", help='simulated time, such as "5 s" (default: the scene\'s)')
-    parser.add_argument("--sample", metavar="N", type=int, help="of a study of tolerances in place of a scene: that watch")
+    parser.add_argument(
+        "--sample", metavar="N", type=int, help="for a tolerance study in place of a scene: the watch of that sample"
+    )
     parser.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], help="change a value of the scene")
     parser.add_argument(
         "--tol", "--tolerance", metavar="X", type=float, help="relative error per step (default: the scene's, 1e-9)"
     )
     parser.add_argument("--method", choices=METHODS, help=f"solver (default {EVENT_DRIVEN})")
     parser.add_argument("--step", metavar="TIME", help='step of the method moreau, such as "10 µs" (the default)')
-    parser.add_argument("--resume", metavar="RUN", help="go on from the end of this results folder, up to --duration")
-    parser.add_argument("--to-the-end", action="store_true", help="go on though nothing can change any more, as after a stop")
-    parser.add_argument("--error-bars", action="store_true", help="run again more exactly, and say how far the numbers move")
-    parser.add_argument("--against", metavar="RUN|SCENE", help="say what differs from this one, as watchsim compare does")
+    parser.add_argument("--resume", metavar="RUN", help="continue from the end of this results folder, up to --duration")
+    parser.add_argument(
+        "--to-the-end", action="store_true", help="continue even when nothing can change any more, as after a stop"
+    )
+    parser.add_argument(
+        "--error-bars", action="store_true", help="run again with tighter tolerance, and say how far the numbers move"
+    )
+    parser.add_argument("--against", metavar="RUN|SCENE", help="print what differs from this one, as watchsim compare does")
     parser.add_argument("--json", action="store_true", help="print the summary as one JSON object")
     parser.add_argument("--movie", action="store_true", help="write movie.mp4 too: the last beats slowly, or the whole run")
     parser.add_argument("--gif", action="store_true", help="write movie.gif too")
     parser.add_argument("--report", action="store_true", help="write report.html too: player, timing sheet, plots in one page")
     parser.add_argument("--no-plots", action="store_true", help="write no plots, which take a third of the time of a short run")
-    parser.add_argument("--profile", action="store_true", help="count what was done, and say where the time went")
+    parser.add_argument("--profile", action="store_true", help="count operations, and say where the time went")
     parser.add_argument("--force", action="store_true", help="replace a results folder that exists")
 
 
@@ -258,7 +264,7 @@ def status(run: Trajectory, summary: dict[str, Any]) -> int:
         say(f"Stopped at {run.stop_message}.")
         return stopping.status()
     if run.stop == Stop.FOREGONE:
-        say(f"Ended before its time (--to-the-end goes on): {run.stop_message}.")
+        say(f"Ended early (--to-the-end continues): {run.stop_message}.")
     if stopping.requested():
         say("Interrupted while writing: everything was kept except the pictures that were not drawn yet.")
         return stopping.status()

@@ -18,10 +18,14 @@ HELP = "what a blow does: jewel, guard pin, time lost; a map over direction and 
 
 def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("scene", metavar="SCENE", help="a scene file (TOML), or the folder that holds scene.toml")
-    parser.add_argument("--direction", metavar="ANGLE", default="0°", help="of the case's acceleration in the movement (0°)")
-    parser.add_argument("--speed", metavar="SPEED", default="4.43 m/s", help="of the hammer (default %(default)s)")
-    parser.add_argument("--phase", metavar="SHARE", type=float, default=0.0, help="of an oscillation, 0 to 1 (default 0)")
-    parser.add_argument("--after", metavar="TIME", default="5 s", help="how long the watch is looked at (default %(default)s)")
+    parser.add_argument(
+        "--direction", metavar="ANGLE", default="0°", help="direction of the case's acceleration in the movement (0°)"
+    )
+    parser.add_argument("--speed", metavar="SPEED", default="4.43 m/s", help="speed of the hammer (default %(default)s)")
+    parser.add_argument(
+        "--phase", metavar="SHARE", type=float, default=0.0, help="phase of the oscillation, 0 to 1 (default 0)"
+    )
+    parser.add_argument("--after", metavar="TIME", default="5 s", help="how long the watch is observed (default %(default)s)")
     parser.add_argument("--map", action="store_true", help="24 directions and 24 phases instead")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="change a key of the scene")
     parser.add_argument("--json", action="store_true", help="print one JSON object instead of text")

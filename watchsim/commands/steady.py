@@ -80,11 +80,11 @@ def all_cycles(cycle: Cycle) -> list[tuple[str, str]]:
         rate = f"{one.rate_s_per_d:.3f}".replace("-", "−")
         lines.append((f"cycle {number}", f"{swings}{turns}, {rate} s/d{left}; {kind}"))
     for place, start in enumerate(cycle.starts or ()):
-        end = start.verdict if start.cycle is None else f"comes to cycle {start.cycle + 1}"
+        end = start.verdict if start.cycle is None else f"leads to cycle {start.cycle + 1}"
         sign = "−" if start.side < 0 else "+"
-        lines.append(("" if place else "let go at", f"{sign}{start.from_deg:.4g}° to {sign}{start.to_deg:.4g}°: {end}"))
+        lines.append(("" if place else "released at", f"{sign}{start.from_deg:.4g}° to {sign}{start.to_deg:.4g}°: {end}"))
     if cycle.cycles is not None and not cycle.cycles:
-        lines.append(("cycles", "none at any swing that was looked at"))
+        lines.append(("cycles", "none at any swing examined"))
     return lines
 
 

@@ -48,7 +48,7 @@ def options(parser: argparse.ArgumentParser) -> None:
         "--outputs",
         metavar="NAMES",
         default="amplitude,rate,beat_error",
-        help="of amplitude, rate, beat_error, period, multiplier, with commas (default %(default)s)",
+        help="of amplitude, rate, beat_error, period, multiplier, separated by commas (default %(default)s)",
     )
     how = parser.add_mutually_exclusive_group()
     how.add_argument("--steady", action="store_true", help="each point by its limit cycle (the default)")
@@ -84,9 +84,7 @@ def _sweep(args: argparse.Namespace, scene: Scene, outputs: tuple[Output, ...], 
     from watchsim.units import TIME
 
     if not args.keys:
-        raise InputError(
-            'sweep: name a key and its values, such as "torques.0.value=-0.6:-1.4:9 µN·m", or ask for --sensitivity.'
-        )
+        raise InputError('sweep: name a key and its values, such as "torques.0.value=-0.6:-1.4:9 µN·m", or add --sensitivity.')
     axes = axes_from_texts(scene, args.keys)
     duration = None if args.duration is None else parse_positive("--duration", args.duration, TIME)
     points = 1

@@ -28,10 +28,12 @@ def options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("-o", "--output", metavar="DIR", help="results folder (default results/NAME-tolerance)")
     parser.add_argument("--samples", metavar="N", type=int, default=1024, help="watches, at most (default %(default)s)")
-    parser.add_argument("--until", metavar="WIDTH", help='stop when the yield is known so closely: "±0.5 %%"')
+    parser.add_argument("--until", metavar="WIDTH", help='stop when the yield is known to within this: "±0.5 %%"')
     parser.add_argument("--duration", metavar="TIME", help='each sample by a run of that length, such as "60 s"')
     parser.add_argument("--importance", action="store_true", help="sample mostly near the failures: for yields above 99.9 %%")
-    parser.add_argument("--seed", metavar="N", type=int, default=0, help="other watches of the same tolerances (default 0)")
+    parser.add_argument(
+        "--seed", metavar="N", type=int, default=0, help="seed of the samples: another one draws other watches (default 0)"
+    )
     parser.add_argument("--shard", metavar="I/N", help="only the i-th of n shares, for watchsim merge")
     add_study_options(parser)
 

@@ -6,7 +6,7 @@ import argparse
 
 from watchsim.commands.console import FINE, MISSED, announce_compile, print_json
 
-HELP = "closed-form and published benchmarks: expected, got, verdict"
+HELP = "closed-form and published benchmarks: expected, obtained, verdict"
 
 
 def options(parser: argparse.ArgumentParser) -> None:

@@ -138,7 +138,7 @@ def _with_error_bars(run: Trajectory, folder: Path) -> dict[str, Any]:
     from watchsim.analysis.summary import more_exact, summary, with_error_bars
     from watchsim.storage.write import real
 
-    progress = Progress("once more, more exactly; simulated s:")
+    progress = Progress("once more, with tighter tolerance; simulated s:")
     try:
         return with_error_bars(summary(run), summary(more_exact(run, progress, real(folder).parent)))
     finally:
@@ -176,6 +176,7 @@ def write_study(folder: Path, numbers: dict[str, Any], table: dict[str, list[Any
 
     Those of an earlier study are there until then. InputError where numbers and table had to go elsewhere.
     """
+    from watchsim.render.style import save
     from watchsim.storage.destination import write_elsewhere
     from watchsim.storage.write import write_file
 
@@ -189,11 +190,8 @@ def write_study(folder: Path, numbers: dict[str, Any], table: dict[str, list[Any
     from watchsim.studies.workers import FIGURES, FILES
 
     drawn = [] if figure is None or stopping.requested() else [f"{name}{ending}" for ending in FIGURES]
-    if drawn:
-        from watchsim.render.style import save  # half a second to load
-
-        for file in drawn:
-            write_file(folder / file, lambda path: save(figure, path), "the plot")
+    for file in drawn:
+        write_file(folder / file, lambda path: save(figure, path), "the plot")
     for file in set(FILES) - {*files, *drawn}:
         _remove(folder / file)
 

@@ -32,7 +32,7 @@ class CycloidalPair:
         "",
         1.0,
         3.0,
-        "radius of the leaves' rounding divided by that of a round top",
+        "ratio of the radius of the leaves' rounding to that of a round top",
         "1: round tops, above: ogives (BS 978-2)",
     )
     spread: float = dim(

@@ -26,13 +26,13 @@ USUAL = "usual in duplex watches"
 class Duplex:
     teeth: int = dim(15, "", 10, 16, "of the escape wheel: so many long ones that rest, so many upright ones that drive", USUAL)
     tip_radius: float = dim(6.0, "mm", 1.5, 15.0, "escape wheel, to the points of the resting teeth", CHOSEN)
-    roller_ratio: float = dim(1.0 / 15.0, "", 0.04, 0.1, "radius of the roller divided by that of the resting teeth", ABBOTT)
+    roller_ratio: float = dim(1.0 / 15.0, "", 0.04, 0.1, "ratio of the roller's radius to that of the resting teeth", ABBOTT)
     intersection: float = dim(
         25.0, "°", 12.0, 40.0, "half of the roller's arc within the circle of the points", f"{ABBOTT}: about 30°"
     )
     notch: float = dim(22.0, "°", 12.0, 40.0, "breadth of the notch, at the roller's centre", CHOSEN)
     impulse_ratio: float = dim(
-        2.0 / 3.0, "", 0.55, 0.75, "radius of the impulse teeth divided by that of the resting teeth", ABBOTT
+        2.0 / 3.0, "", 0.55, 0.75, "ratio of the impulse teeth's radius to that of the resting teeth", ABBOTT
     )
     reach: float = dim(8.5, "°", 6.0, 13.0, "wheel, half overlap of the circles of impulse teeth and pallet", CHOSEN)
     drop: float = dim(10.0, "°", 3.0, 16.0, "balance, by which the pallet is ahead of the tooth that will drive it", ABBOTT)

@@ -62,7 +62,7 @@ class PinPallet:
     shake: float = dim(0.03, "mm", 0.003, 0.3, "by which the slot of the fork is wider than the impulse pin", PLAYTNER)
     guard_freedom: float = dim(1.0, "°", 0.2, 2.5, "lever, from its bank until the dart meets the safety roller", PLAYTNER)
     safety_ratio: float = dim(
-        0.62, "", 0.5, 0.75, "radius of the safety roller divided by that of the impulse pin's flat", PLAYTNER
+        0.62, "", 0.5, 0.75, "ratio of the safety roller's radius to that of the impulse pin's flat", PLAYTNER
     )
     crescent: float = dim(25.0, "°", 12.0, 40.0, "half opening of the crescent, at the balance's centre", CHOSEN)
     wheel_inertia: float = dim(0.3, "mg·cm²", 1e-3, 100.0, "escape wheel with the train as felt there", ESTIMATE)

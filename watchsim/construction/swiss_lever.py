@@ -66,7 +66,7 @@ class SwissLever:
     horn_end: float = dim(62.0, "°", 35.0, 80.0, "how far a horn reaches round the balance, the lever on its bank", CHOSEN)
     guard_freedom: float = dim(0.765, "°", 0.1, 2.5, "lever, from its bank until the dart meets the safety roller", CHOSEN)
     safety_ratio: float = dim(
-        0.66, "", 0.5, 0.75, "radius of the safety roller divided by that of the jewel's flat", f"{PLAYTNER}: 4/7 to 2/3"
+        0.66, "", 0.5, 0.75, "ratio of the safety roller's radius to that of the jewel's flat", f"{PLAYTNER}: 4/7 to 2/3"
     )
     crescent: float = dim(22.0, "°", 12.0, 40.0, "half opening of the crescent, at the balance's centre", CHOSEN)
     wheel_inertia: float = dim(0.05, "mg·cm²", 1e-4, 100.0, "escape wheel with the train as felt there", ESTIMATE)

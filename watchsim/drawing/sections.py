@@ -62,7 +62,7 @@ def read_solid(data: bytes, ending: str, units: str | None, fit: float, section:
         for outline in outlines_at(solid, at, rounding):
             found = fitted(*outline, fit, rounding)
             run = len(strokes)
-            strokes += [Stroke(edge, solid.name, f"edge {run + k}", run + k) for k, edge in enumerate(found.edges, 1)]
+            strokes += [Stroke(edge, solid.name, f"edge {run + k}", run) for k, edge in enumerate(found.edges, 1)]
             corners += len(outline.corners)
             arcs, deviation = arcs + found.arcs, max(deviation, found.deviation)
     return Content(

@@ -489,7 +489,7 @@ def player_data(
 
 
 def _coil(spring: Hairspring, names: list[str]) -> dict[str, Any]:
-    """A hairspring, and in which colours it, its collet and its stud are drawn (on light and on dark ground)."""
+    """A hairspring, and in which colours it, its collet and its stud are drawn (on a light and on a dark background)."""
     coil = spring.coil
     return {
         "body": names.index(spring.body),
@@ -507,7 +507,7 @@ def _coil(spring: Hairspring, names: list[str]) -> dict[str, Any]:
 
 
 def _zigzag(spring: Zigzag, names: list[str]) -> dict[str, Any]:
-    """A spring between points, and in which colours it is drawn (on light and on dark ground)."""
+    """A spring between points, and in which colours it is drawn (on a light and on a dark background)."""
     return {
         "bodies": [-1 if name is None else names.index(name) for name in spring.between],
         "points": [point.tolist() for point in spring.points],

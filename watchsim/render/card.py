@@ -50,7 +50,7 @@ def card(
 
     t        the instant of a PNG (s); default: the middle of the last impulse. A GIF shows the last oscillation, slowly where
              things happen; where nothing keeps time, the last tenth of the run
-    dark     on dark ground
+    dark     with a dark background
     numbers  those of summary.json; default: computed from the run
 
     ValueError for another ending or an instant that was not recorded, OSError where the file cannot be written.
@@ -87,12 +87,10 @@ def card(
 
 
 def check_card(path: str | os.PathLike[str]) -> Path:
-    """The path, if a card can be written there: ValueError for a wrong ending, OSError where there is no such folder."""
+    """The path, if a card can be written there: ValueError for a wrong ending, OSError for a folder."""
     target = Path(path)
     if target.suffix.lower() not in ENDINGS:
         raise ValueError(f"{target}: the ending decides the format of a card; use {' or '.join(ENDINGS)}")
-    if not target.parent.is_dir():
-        raise FileNotFoundError(f"{target}: there is no folder {target.parent}; create it first")
     if target.is_dir():
         raise IsADirectoryError(f"{target} is a folder; a card needs the name of a file")
     return target

@@ -83,12 +83,10 @@ PIPE = 2**20  # bytes: the most that Linux grants anybody
 
 
 def check_path(path: str | os.PathLike[str]) -> Path:
-    """The path, if a movie can be written there: ValueError for a wrong ending, OSError where there is no such folder."""
+    """The path, if a movie can be written there: ValueError for a wrong ending, OSError for a folder."""
     target = Path(path)
     if target.suffix.lower() not in ENDINGS:
         raise ValueError(f"{target}: the ending decides the format of a movie; use {' or '.join(ENDINGS)}")
-    if not target.parent.is_dir():
-        raise FileNotFoundError(f"{target}: there is no folder {target.parent}; create it first")
     if target.is_dir():
         raise IsADirectoryError(f"{target} is a folder; a movie needs the name of a file")
     return target

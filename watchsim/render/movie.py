@@ -263,7 +263,7 @@ def movie(  # noqa: PLR0913 - options, by name
     names     on the parts, as in `watchsim.report`
     forces    arrows for the forces at contacts, of a run by events
     sound     the ticking: each blow when its instant is shown, at slow and adaptive speed, too, with its own pitch
-    dark      on dark ground
+    dark      with a dark background
     progress  called with (frames done, frames in all)
 
     ValueError for arguments that make no sense, OSError where the file cannot be written; the file is written whole or not
@@ -391,7 +391,7 @@ class ByHand(Clock):
 
 
 def turn_movie(found: Turn, path: str | os.PathLike[str], dark: bool = False) -> Path:
-    """Write the last cycle as MP4 or GIF, by the ending of `path`, on light or on dark ground; touches are ringed."""
+    """Write the last cycle as MP4 or GIF, by the ending of `path`, on a light or dark background; touches are ringed."""
     target = check_path(path)
     gif = target.suffix.lower() == ".gif"
     size, fps = (GIF_SIZE, GIF_FPS) if gif else (MP4_SIZE, FPS)

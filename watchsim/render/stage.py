@@ -324,7 +324,7 @@ def still(
     """Write a picture (PNG or what else imageio knows) of the bodies where the scene puts them at t = 0.
 
     Edges that can ever touch another body are in colour, those of which a pair is a candidate at the start in another; rings
-    mark the places (m) where bodies overlap. `dark`: on dark ground.
+    mark the places (m) where bodies overlap. `dark`: with a dark background.
     """
     import imageio.v3 as imageio
 

@@ -29,7 +29,7 @@ MOMENTS = ("free", "back", "leaves", "meets")  # in this order of importance
 
 
 def turn_picture(found: Turn, path: Path, on_dark: bool = False) -> None:
-    """Write the picture as PNG, on light or on dark ground."""
+    """Write the picture as PNG, on light or with a dark background."""
     figure = dark(_figure(found)) if on_dark else _figure(found)
     write_file(path, lambda scratch: figure.savefig(scratch, format="png", dpi=DPI), "the picture")
 

@@ -38,6 +38,12 @@ from watchsim.scene.values import shown
 from watchsim.units import DIMENSIONS, NUMBER, Dimension, UnitError, known_unit, split
 
 
+def full_key(mapping: Mapping[str, Any], name: str) -> str:
+    """ "lock" of a scene with a design is "design.lock"."""
+    table = mapping.get(DESIGN)
+    return f"{DESIGN}.{name}" if "." not in name and isinstance(table, dict) and name in table and name != "of" else name
+
+
 def assign(mapping: dict[str, Any], key: str, value: object, faults: Faults) -> None:
     """Put the value there, into tables that are made where they are missing; what says the same thing beside it goes."""
     path = path_of(key)

@@ -151,12 +151,19 @@ class _Drawn:
     sheets: Made
 
 
-def with_design(written: Written, faults: Faults) -> tuple[dict[str, Any], Made]:
-    """The mapping of the whole scene, and the drawings that the design makes; SceneError where it cannot be drawn."""
-    table = written.mapping[DESIGN]
+def in_full(mapping: Mapping[str, Any], changes: Mapping[str, object], faults: Faults) -> dict[str, object]:
+    """Changes of a scene with a design, with "lock" as "design.lock"; SceneError where the design is not known."""
+    table = mapping[DESIGN]
     if not isinstance(table, dict):
         faults.add(DESIGN, 'a table is needed here: [design] with of = "swiss_lever" and dimensions', shown(table))
         faults.raise_any()
+    names = [one.name for one in designed(changes.get(f"{DESIGN}.of", table.get("of")), faults).dimensions]
+    return {f"{DESIGN}.{key}" if key in names else key: value for key, value in changes.items()}
+
+
+def with_design(written: Written, faults: Faults) -> tuple[dict[str, Any], Made]:
+    """The mapping of the whole scene, and the drawings that the design makes; SceneError where it cannot be drawn."""
+    table = written.mapping[DESIGN]
     mine = {key.partition(".")[2]: value for key, value in written.changes.items() if _of_design(key)}
     design = designed({**table, **mine}.get("of"), faults)
     given = {**table, **{name: with_si(design, name, value) for name, value in mine.items()}}
@@ -165,11 +172,8 @@ def with_design(written: Written, faults: Faults) -> tuple[dict[str, Any], Made]
     faults.raise_any()
     drawn = _drawn(design.name, values)
     mapping = merged(drawn.scene, {key: value for key, value in written.mapping.items() if key != DESIGN})
-    names = [one.name for one in design.dimensions]
     for key, value in written.changes.items():
-        if key in names:
-            faults.add(key, f'unknown key. Did you mean "{DESIGN}.{key}"?', shown(value))
-        elif not _of_design(key):
+        if not _of_design(key):
             assign(mapping, key, value, faults)
     mapping[DESIGN] = {"of": design.name, **{one.name: one.shown(getattr(values, one.name)) for one in design.dimensions}}
     return mapping, drawn.sheets

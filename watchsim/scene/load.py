@@ -15,7 +15,7 @@ from typing import Any
 from watchsim.drawing.write import Files
 from watchsim.paths import profiles_dir
 from watchsim.scene.assign import assign
-from watchsim.scene.designed import with_design
+from watchsim.scene.designed import in_full, with_design
 from watchsim.scene.errors import Fault, Faults, SceneError
 from watchsim.scene.keys import LISTED, LOCK, SECTIONS, words_of
 from watchsim.scene.read_bodies import read_bodies
@@ -55,7 +55,7 @@ def from_mapping(
     written, made, changes = None, None, changes or {}
     mapping = understood(mapping, SECTIONS, "section", "", faults)
     if "design" in mapping:
-        written = Written(mapping, dict(changes))
+        written = Written(mapping, in_full(mapping, changes, faults))
         mapping, made = with_design(written, faults)
         written = replace(written, made=frozenset(made))
     else:

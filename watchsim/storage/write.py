@@ -305,9 +305,13 @@ def _ends_in(folder: Path, path: Path) -> bool:
 def write_file(target: Path, fill: Callable[[Path], object], what: str) -> None:
     """Let `fill` write a file whose name ends like that of `target`, and put it in the place of `target`.
 
+    Missing folders are made.
+
     OSError where that fails, with `what` could not be written: what was there before is then still there, and nothing else.
     """
     place = real(target)
+    with _explained(what, target):
+        place.parent.mkdir(parents=True, exist_ok=True)
     with _explained(what, target), scratch_in(place.parent) as scratch:
         scratch.new.mkdir()
         made = scratch.new / f"file{place.suffix.lower()}"

@@ -1,6 +1,7 @@
 """Which values of which key does a sweep go through?
 
-KEY=FROM:TO:N or KEY=A,B,C, with the unit behind the last number or behind each of them.
+KEY=FROM:TO:N or KEY=A,B,C, with the unit behind the last number, behind TO, or behind each of them. KEY is a path, or the
+name of a dimension of the scene's design.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from watchsim.scene.assign import dimension_of
+from watchsim.scene.assign import dimension_of, full_key
 from watchsim.scene.errors import Fault, SceneError
 from watchsim.scene.keys import words_of
 from watchsim.scene.scene import Scene
@@ -77,7 +78,7 @@ def axes_from_texts(scene: Scene, texts: Iterable[str]) -> tuple[Axis, ...]:
         try:
             if not equals or not key or not values:
                 raise UnitError('write KEY=FROM:TO:N or KEY=A,B,C, such as "torques.0.value=-0.6:-1.4:9 µN·m"')
-            axes.append(_axis(scene, key, values))
+            axes.append(_axis(scene, full_key(scene.source, key), values))
         except UnitError as error:
             faults.append(Fault(key or text, str(error), f" = {values}" if values else "", place="sweep"))
     return checked(scene, axes, faults)
@@ -119,6 +120,7 @@ def _axis(scene: Scene, key: str, values: str) -> Axis:
     parts = [part.strip() for part in values.split(":")]
     if dimension is not None and len(parts) == 3:
         count, unit = split(parts[2])
+        unit = unit or split(parts[1])[1]
         start, end = (_quantity(part, unit, dimension) for part in parts[:2])
         if not count.isdigit() or int(count) < 1:
             raise UnitError(f'"{parts[2]}": how many values must be a whole number from 1 on')

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from watchsim.displays import notebook_html
+from watchsim.scene.assign import full_key
 from watchsim.scene.errors import Fault, SceneError
 from watchsim.scene.keys import DESIGN, nearest, words_of
 from watchsim.scene.read_settings import FUNCTION
@@ -82,7 +83,7 @@ def knobs_from(
     """The numbers at those keys; with limits, SI numbers or texts, or None. Faults are added to those found, under `place`."""
     found: list[Knob] = []
     for name, pair in limits.items():
-        key = full_key(scene, name)
+        key = full_key(scene.source, name)
         if any(one.key == key for one in found):
             faults.append(Fault(name, "is given twice; name each key once", place=place))
             continue
@@ -90,12 +91,6 @@ def knobs_from(
         if knob is not None:
             found.append(knob)
     return tuple(found)
-
-
-def full_key(scene: Scene, name: str) -> str:
-    """ "lock" of a scene with a design is "design.lock"."""
-    table = scene.source.get(DESIGN)
-    return f"{DESIGN}.{name}" if "." not in name and isinstance(table, dict) and name in table and name != "of" else name
 
 
 def _knob(scene: Scene, key: str, pair: tuple[Any, Any] | None, faults: list[Fault], place: str) -> Knob | None:

@@ -108,7 +108,7 @@ def improve(  # noqa: PLR0913 - options, by name
     starts    so many searches, the first from the scene as it is, the others from elsewhere between the limits
     points    designs on a front
     duration  s: by the end of a run instead of by limit cycles; what is found must work on its limit cycle, too
-    progress  called with the number of designs looked at
+    progress  called with the number of designs evaluated
 
     Limits and goals in the unit that an output has in tables. SceneError with all that is wrong with the arguments.
     """
