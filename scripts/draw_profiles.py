@@ -2,7 +2,7 @@
 
     python scripts/draw_profiles.py swiss_lever|coaxial|bench_lever|balance [folder]
 
-The scenes (profiles/NAME/scene.toml) are written by hand; scripts/checks/measure_lever.py measures what was drawn.
+The scenes (profiles/NAME/scene.toml) are written by hand; tests/reference/measure_lever.py measures what was drawn.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Are the profiles drawn as they claim: units, outlines, lock, lift, drop, draw, freedoms, and a start that is clear?
 
-The parts are turned against one another with shapely (scripts/checks/measure_lever.py), which shares nothing with the
+The parts are turned against one another with shapely (tests/reference/measure_lever.py), which shares nothing with the
 simulation.
 """
 
@@ -15,6 +15,7 @@ import ezdxf
 import pytest
 import shapely
 from reference import incline_closed_form as incline
+from reference.measure_lever import measure, placed, read_layout, tomllib
 from scipy.optimize import brentq
 from shapely.affinity import rotate
 from strangers import PIN_LEVER, needs, pin_lever_scene
@@ -22,10 +23,9 @@ from strangers import SCENES as SCENES_BESIDE
 
 ROOT = Path(__file__).resolve().parents[1]
 PROFILES = ROOT / "profiles"
-sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "scripts" / "checks")]
+sys.path.insert(0, str(ROOT / "scripts"))
 
 import draw_profiles  # noqa: E402
-from measure_lever import measure, placed, read_layout, tomllib  # noqa: E402
 
 from watchsim.construction.swiss_lever_outlines import Swiss  # noqa: E402
 

@@ -113,7 +113,8 @@ COORDINATE = np.dtype(
         ("pinned", "f8"),  # stiffness that the spring has more beyond its curb pins
         ("pin_low", "f8"),  # ways from rest at which the coil touches either pin
         ("pin_high", "f8"),
-        ("bent", "i8"),  # 1: `cubic` or `pinned` is not zero
+        ("coil", "i8"),  # 1 + its row of `coils`; 0: the spring has no weight and does not press on the pivot
+        ("bent", "i8"),  # 1: `cubic`, `pinned` or `coil` is not zero
         ("rest", "f8"),
         ("level", "f8"),  # where it stands in balance: passages of it are events
         ("watched", "i8"),  # 1: its turning points and passages are events
@@ -190,6 +191,10 @@ SHOCK = np.dtype(
 
 # Mass, first moment and inertia of a body with what it carries, about the origin of its frame; rows only in scenes with shocks.
 WEIGHED = np.dtype([("body", "i8"), ("mass", "f8"), ("moment_x", "f8"), ("moment_y", "f8"), ("inertia", "f8")])
+
+# A hairspring that bends and weighs: series in the way from rest over `furthest`, rows first..first + count of `windings`.
+COIL = np.dtype([("first", "i8"), ("count", "i8"), ("furthest", "f8")])
+COIL_TORQUE, COIL_ENERGY, COIL_X, COIL_Y = range(4)  # columns of `windings`
 
 TABLE = np.dtype(
     [
@@ -301,6 +306,8 @@ class Model(NamedTuple):
     shocks: Records
     jolts: NDArray[np.float64]  # (rows, 6) of recordings: time since the start, A_x, A_y, Φ'', Φ', Φ
     weighed: Records
+    coils: Records
+    windings: NDArray[np.float64]  # (terms, 4): torque beyond that of a linear spring, N·m; its energy, J; force x and y, N
 
 
 ModelRef = by_reference(Model, __name__)

@@ -65,7 +65,8 @@ def oiled(scene: Scene, dice: Dice) -> Scene:
     if dice.chance(0.4):
         hard, lasts = dice.log(1.0, 1e3), dice.log(1e-3, 0.1) * scene.duration
         way = dice.uniform(0.0, 2.0 * np.pi)
-        turn = dice.log(1.0, 1e3) / lasts if dice.chance(0.3) else 0.0
+        # The case turns on: by 0.1 to 10 rad in the time of the run, so that nothing is flung further than e^10 sizes.
+        turn = 0.5 * np.pi * dice.log(0.1, 10.0) / (lasts * scene.duration) if dice.chance(0.3) else 0.0
         acceleration = (hard * float(np.cos(way)), hard * float(np.sin(way)))
         shocks.append(Shock(dice.uniform(0.0, 0.8) * scene.duration, lasts, acceleration, turn))
     return replace(scene, bodies=tuple(heavy), bearings=tuple(bearings), contacts=contacts, shocks=tuple(shocks))

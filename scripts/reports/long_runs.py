@@ -24,7 +24,6 @@ from watchsim.analysis.escape_wheel import missed_beats
 from watchsim.analysis.timing import DAY, beats
 from watchsim.paths import profiles_dir
 from watchsim.scene.load import load
-from watchsim.scene.roles import roles
 from watchsim.scene.scene import EVERYTHING, Scene
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.state import EventKind, Stop
@@ -103,7 +102,7 @@ def long_run(scene: Scene, duration: float) -> Long:
         name: np.concatenate([getattr(part, name) for part in parts]) for name in ("t", "q", "u", "a", "events")
     }
     whole = dataclasses.replace(parts[-1], **joined)
-    found, wheel = beats(whole), roles(scene).wheel
+    found = beats(whole)
     end = np.array([part.simulated for part in parts])
     window = np.searchsorted(end, found.t)
     by_window = [found.amplitude_deg[window == i] for i in range(len(parts))]
@@ -117,7 +116,7 @@ def long_run(scene: Scene, duration: float) -> Long:
         residual=np.array([part.energy["residual_J"] for part in parts]),
         supplied=np.array([part.energy["in_J"] for part in parts]),
         half_swings=len(found),
-        missed=missed_beats(whole, wheel, found) if wheel else None,
+        missed=missed_beats(whole),
         penetration=whole.worst_penetration,
         complementarity=whole.worst_residual,
         counts=whole.counts,

@@ -13,10 +13,10 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 
 SCRIPTS = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(SCRIPTS), str(SCRIPTS / "checks")]
+sys.path[:0] = [str(SCRIPTS), str(SCRIPTS.parent / "tests")]
 
 from draw_profiles import by_hand  # noqa: E402
-from measure_lever import moments  # noqa: E402
+from reference.measure_lever import moments  # noqa: E402
 
 import watchsim as ws  # noqa: E402
 from watchsim.geometry.loops import Loop  # noqa: E402

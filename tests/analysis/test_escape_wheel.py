@@ -11,7 +11,7 @@ import pytest
 from analysis.made_beats import DEGREE, PERIOD, Events, balance_only, lever_run, lever_scene, polygon, star, steady_swings
 from render.fake_runs import disc_run, watch_run
 
-from watchsim.analysis.escape_wheel import advance, missed_beats, progress, standstill, why_no_timing
+from watchsim.analysis.escape_wheel import missed_beats, progress, standstill, why_no_timing
 from watchsim.analysis.summary import summary, summary_text
 from watchsim.analysis.timing import beats, is_recorded
 from watchsim.commands.pictures import filmed
@@ -43,16 +43,16 @@ def test_a_drive_given_as_a_table():
 def test_the_wheel_goes_half_a_pitch_per_half_swing():
     run = lever_run(20)
     found = beats(run)
-    moved = advance(run, "wheel", found)
-    assert moved.half_pitch == pytest.approx(12.0 * DEGREE) and moved.steps == pytest.approx(np.ones(19), abs=1e-6)
+    steps = np.diff(progress(run, "wheel", np.append(found.start[:1], found.end)))
+    assert steps == pytest.approx(np.full(19, 12.0 * DEGREE), abs=1e-6)
     assert progress(run, "wheel", np.array([run.t[-1]]))[0] == pytest.approx(20 * 12.0 * DEGREE, rel=1e-9)
-    assert missed_beats(run, "wheel", found) == 0 and standstill(run, found) is None
+    assert missed_beats(run) == 0 and standstill(run, found) is None
 
 
 @pytest.mark.parametrize("missed", [(5,), (5, 6, 11), tuple(range(3, 9))])
 def test_missed_beats(missed):
     run = lever_run(20, missed=missed)
-    assert missed_beats(run, "wheel", beats(run)) == len(missed)
+    assert missed_beats(run) == len(missed)
 
 
 def test_beats_missed_before_the_recorded_window_are_counted():
@@ -61,7 +61,7 @@ def test_beats_missed_before_the_recorded_window_are_counted():
         found = beats(run)
         assert len(found) == 39 and run.t[0] >= 4.0
         # Which side of the wheel's start the first half swing belongs to is not known: one beat may be forgiven.
-        assert len(missed) - 1 <= missed_beats(run, "wheel", found) <= len(missed)
+        assert len(missed) - 1 <= missed_beats(run) <= len(missed)
 
 
 def test_what_is_not_recorded_is_said():
@@ -71,13 +71,13 @@ def test_what_is_not_recorded_is_said():
     parts = replace(run, t=run.t[gap], q=run.q[gap], u=run.u[gap], a=run.a[gap])
     assert is_recorded(parts, np.array([4.1, 4.3, 4.6])).tolist() == [True, False, True]
     nothing = replace(run, t=run.t[:0], q=run.q[:0], u=run.u[:0], a=run.a[:0])
-    assert not is_recorded(nothing, np.array([1.0])).any() and missed_beats(nothing, "wheel", beats(nothing)) is None
+    assert not is_recorded(nothing, np.array([1.0])).any() and missed_beats(nothing) is None
 
 
 def test_a_wheel_without_teeth_misses_nothing_that_is_known():
     run = lever_run(20)
     bare = tuple(replace(body, loops=()) for body in run.scene.bodies)
-    assert missed_beats(replace(run, scene=replace(run.scene, bodies=bare)), "wheel", beats(run)) is None
+    assert missed_beats(replace(run, scene=replace(run.scene, bodies=bare))) is None
 
 
 def test_a_watch_that_stops():

@@ -12,6 +12,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from reference.measure_lever import measure
 from scipy.optimize import brentq
 from shapely import Polygon
 from shapely.affinity import rotate, translate
@@ -27,7 +28,6 @@ from watchsim.mechanism.overlap import overlap_faults
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts" / "checks"))
 
-from measure_lever import measure  # noqa: E402
 from try_designs import numbers  # noqa: E402
 
 LEVER = design("swiss_lever")

@@ -4,21 +4,23 @@ from __future__ import annotations
 
 import functools
 import math
+import random
+from collections.abc import Iterator
 from dataclasses import fields, replace
 
-import compare_designs
-import measure_lever
 import pytest
 import shapely
 from escapement.made import mirrored_scene, renamed_scene, swiss_scene, turned_scene
 from every_time import few
+from reference import measure_lever
 from shapely import affinity
+from try_designs import numbers as drawn_at_random
 
 from watchsim import designs
 from watchsim.construction import registry as known
 from watchsim.construction.coaxial import Points
 from watchsim.construction.swiss_lever_outlines import Swiss, banking
-from watchsim.designs import Maker
+from watchsim.designs import Drawn, Maker
 from watchsim.escapement.fork_and_pin import Quantity, Safety
 from watchsim.escapement.function_report import judgements, statics, text
 from watchsim.escapement.impulses import Impulse, Pallet
@@ -123,7 +125,7 @@ def test_draw_and_recoil_follow_from_the_construction(name):
 @pytest.mark.slow
 @pytest.mark.parametrize("scene", [SWISS, pytest.param(BENCH, marks=pytest.mark.slow)], ids=lambda path: path.parent.name)
 def test_turning_polygons_by_small_steps_gives_the_same(scene):
-    """scripts/checks/measure_lever.py turns shapely polygons and shares nothing with the package."""
+    """tests/reference/measure_lever.py turns shapely polygons and shares nothing with the package."""
     function = measure(load(scene))
     assert function.pallets and function.fork
     *beats, safety = measure_lever.measure(scene)
@@ -153,7 +155,7 @@ def test_the_largest_freedom_is_found_between_the_steps(swiss):
     """As a step of a degree misses it, so a finer one approaches it from below."""
     layout = measure_lever.read_layout(SWISS)
     bank = measure_lever.Escapement(layout).bank(1)
-    from measure_lever import Roller
+    from reference.measure_lever import Roller
 
     roller = Roller(layout, bank)
     assert swiss.safety
@@ -481,13 +483,48 @@ def test_a_wheel_that_passes_under_the_roller_stone_runs_free():
 
 # Random designs: is what is measured in their drawings what they were drawn to?
 
+CLOSE = 0.01  # degrees
+
+
+def accepted(count: int, seed: int) -> Iterator[Drawn]:
+    """Random designs without contradictions."""
+    design, chance = known.design("swiss_lever"), random.Random(seed)
+    while count > 0:
+        chosen = drawn_at_random(design, chance)
+        if not design.refusals(chosen):
+            count -= 1
+            yield Drawn(design, design.chosen(chosen))
+
+
+def differences(design: Drawn, function: Function) -> Iterator[tuple[str, float]]:
+    """Measured less chosen, degrees, by the name of the dimension."""
+    chosen = design.values
+    assert function.pallets is not None and function.fork is not None and function.safety is not None
+    entry, exit_ = function.pallets
+
+    def off(one: Quantity, value: float) -> float:
+        return max((math.degrees(x) - value for x in (one.value, one.worst)), key=abs)
+
+    for name, one in (("entry", entry), ("exit", exit_)):
+        yield f"lock, {name}", off(one.lock, chosen.lock)
+        yield f"run, {name}", off(one.run, chosen.run)
+        yield f"draw, {name}", off(one.draw, chosen.draw)
+        yield f"lift, {name}", off(one.lift, chosen.lift_on_stone + chosen.lift_on_tooth)
+    yield "lift_on_stone", off(entry.lift_stone, chosen.lift_on_stone)
+    yield "lift_on_tooth", off(entry.lift_tooth, chosen.lift_on_tooth)
+    yield "drop_inside", off(entry.drop, chosen.drop_inside)
+    yield "drop_outside", off(exit_.drop, chosen.drop_outside)
+    for k, name in enumerate(("entry", "exit")):
+        yield f"lift_angle, from {name}", off(function.fork.lift_angle[k], chosen.lift_angle)
+        yield f"guard_freedom, {name}", off(function.safety[k].guard, chosen.guard_freedom)
+
 
 def worst(count: int, seed: int) -> dict[str, float]:
     found: dict[str, float] = {}
-    for design in compare_designs.accepted(count, seed):
+    for design in accepted(count, seed):
         function = measure(design.scene())
         assert function.missing == (), design.dimensions
-        for name, off in compare_designs.differences(design, function):
+        for name, off in differences(design, function):
             found[name] = max(found.get(name, 0.0), abs(off))
     return found
 
@@ -497,7 +534,7 @@ def judge(found: dict[str, float]) -> None:
     for name, off in found.items():
         if name.startswith("draw"):
             # Chosen against the radius at the corner, measured at the toe: they differ where the wheel stands back.
-            assert off < compare_designs.CLOSE, name
+            assert off < CLOSE, name
         elif not name.startswith("lift_on"):
             assert off < 1e-5, name
 

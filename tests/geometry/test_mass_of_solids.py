@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import sys
 from itertools import pairwise
 from pathlib import Path
 
@@ -13,6 +12,7 @@ import pytest
 import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from reference.measure_lever import moments
 from strangers import PIN_LEVER, marks
 
 from watchsim.drawing.read import read
@@ -20,10 +20,6 @@ from watchsim.geometry.hairspring import CHORDS, SHARE, Spiral, drawn_strip, rib
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import TURN, Arc, Edge, Line, Point
 from watchsim.geometry.solids import Section, Turned, area, mass_properties, reach, section, turned, upright
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts" / "checks"))
-
-from measure_lever import moments
 
 TINY = 1e-12
 

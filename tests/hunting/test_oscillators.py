@@ -17,9 +17,17 @@ FOUND = [
     (1, 249, "verdict"),  # the wheel went to and fro, and did not stand
     (2, 29, "steady"),  # the error of a run left out what its tolerance does
     (2, 34, "steady"),
+    (1, 48, "records"),  # a wheel that stands: `missed_beats` by one
+    (1, 120, "records"),  # the same, and what touches since before the recorded end
+    (1, 140, "records"),  # when it first knocked, and how often
+    (1, 245, "records"),
+    (1, 256, "records"),  # a balance held since before the recorded end
+    (3, 97, "records"),  # it tripped before the recorded end
 ]
 
 
-@pytest.mark.parametrize(("seed", "number", "judge"), few(FOUND, lambda one: one[1] in (57, 249), several=True))
+@pytest.mark.parametrize(
+    ("seed", "number", "judge"), few(FOUND, lambda one: one[1] in (57, 249, 120, 140, 256, 97), several=True)
+)
 def test_what_was_found_stays_mended(seed: int, number: int, judge: str) -> None:
     assert not list(JUDGES[judge](mechanism(seed, number), lambda word: None))

@@ -348,6 +348,35 @@ def test_solids_are_turned_chosen_and_put_away(run: Trajectory, written: Path) -
         assert not page.is_visible("#solid") and silent(page)
 
 
+def test_moving_solids_are_coarser_where_frames_are_slow_and_fine_at_rest(written: Path) -> None:
+    """Frames of 40 ms lead down rung by rung, frames in time up again, later each time; scripts alone change nothing."""
+    frames = """([gap, own, count]) => {
+      for (let i = 0; i < count; i++) watchsim.fineness().frame(gap, own);
+      return watchsim.fineness().ratio;
+    }"""
+    with opened(written) as page:
+        page.focus("#stage")
+        page.keyboard.press("3")
+        page.wait_for_selector('#space[aria-pressed="true"]')
+        width = lambda: page.evaluate("document.getElementById('solid').width")  # noqa: E731
+        page.wait_for_function("document.getElementById('solid').width > 300")
+        still = width()
+        assert page.evaluate(frames, [40.0, 30.0, 504]) == 2.0
+        assert [page.evaluate(frames, [40.0, 3.0, 12]) for _ in range(5)] == [1.5, 1.0, 0.75, 0.5, 0.5]
+        assert page.evaluate(frames, [20.0, 3.0, 504]) == 0.5
+        page.keyboard.press("Space")
+        page.wait_for_function("wide => document.getElementById('solid').width < wide / 2", arg=still)
+        page.keyboard.press("Space")
+        page.wait_for_function("wide => document.getElementById('solid').width === wide", arg=still)
+        first, second, third = page.evaluate("""() => {
+          const pace = watchsim.fineness();
+          const wait = () => { let n = 0; for (; pace.rung === 4; n++) pace.frame(16, 3); return n; };
+          return [1, 2, 3].map(() => { while (pace.rung < 4) pace.frame(40, 3); return wait(); });
+        }""")
+        assert first < second < third
+        assert silent(page)
+
+
 def crossing(one: Any, other: Any) -> bool:
     (a, b), (c, d) = (np.array(line) for line in (one, other))
     side = lambda p, q, r: np.sign((q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]))  # noqa: E731

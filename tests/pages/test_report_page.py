@@ -30,6 +30,7 @@ from watchsim.geometry.primitives import Arc, Line
 from watchsim.pages.html import SCRIPTS, element, embedded, joined
 from watchsim.pages.player import TooMuch, channels, path_data, shown
 from watchsim.pages.report_page import page_text, report
+from watchsim.pages.solids import packed_solids
 from watchsim.pages.timing_sheet import phase_tables, verdict
 from watchsim.paths import profiles_dir
 from watchsim.render.rows import kept_rows
@@ -350,3 +351,18 @@ duration = "0.1 s"
     data = (tmp_path / "out" / "scene.glb").read_bytes()
     tree = json.loads(data[20 : 20 + int.from_bytes(data[12:16], "little")])
     assert [mesh["name"] for mesh in tree["meshes"]] == [f"wheel.{layer}"]
+
+
+@pytest.mark.parametrize("profile", ["swiss_lever", "tourbillon", "verge", "graham"])
+def test_triangles_of_solids_turn_as_their_normals_so_that_backs_need_no_drawing(profile: str) -> None:
+    packed = packed_solids(load(profiles_dir() / profile), 0.02)
+    assert packed
+    for piece in packed["pieces"]:
+        kinds = {"points": "<i2", "normals": "i1", "faces": "<u4" if piece["wide"] else "<u2"}
+        points, normals, faces = (
+            np.frombuffer(base64.b64decode(piece[key]), kind).reshape(-1, 3) for key, kind in kinds.items()
+        )
+        a, b, c = (points[faces[:, k]].astype(float) for k in range(3))
+        facing = np.cross(b - a, c - a)
+        along = np.sum(facing * normals[faces].astype(float).sum(axis=1), axis=1)
+        assert np.all(along[np.linalg.norm(facing, axis=1) > 1e3] > 0.0)

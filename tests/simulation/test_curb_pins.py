@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -85,6 +86,15 @@ def test_steps_end_on_the_pins_so_that_periods_are_exact_at_the_usual_tolerance(
     assert np.diff(turns[::2]) == pytest.approx(period(4.0, 0.2, 0.35), rel=1e-9)
     on_pin = np.abs(np.abs(run.q[:, 0]) - 0.35) < 1e-11
     assert np.count_nonzero(on_pin) >= 4 * (len(turns) // 2 - 1)
+    assert run.energy["residual_relative"] < 1e-10
+    assert run.counts["rejected_steps"] < 0.6 * run.counts["steps"]
+
+
+@pytest.mark.parametrize("bend", [{"curb": Curb(0.05, math.radians(20.0))}, {"cubic": 1e-9}])
+def test_the_energy_of_a_lever_watch_with_a_bent_spring_balances(bend: dict[str, Any]) -> None:
+    scene = load(profiles_dir() / "swiss_lever" / "scene.toml")
+    run = simulate(replace(scene, springs=(replace(scene.springs[0], **bend),)), duration=10.0)
+    assert run.energy["residual_relative"] < 1e-9
 
 
 def test_time_stepping_has_its_period_to_second_order() -> None:

@@ -19,7 +19,6 @@ from watchsim.scene.scene import EVERYTHING, Body, Recording, Scene
 from watchsim.simulation import runner as running
 from watchsim.simulation.recording import (
     FEWEST_TURNS,
-    Tally,
     first_noises,
     half_swings,
     since_two_before,
@@ -30,6 +29,7 @@ from watchsim.simulation.recording import (
 from watchsim.simulation.recording import Recorder as Kept
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.state import EVENT_DTYPE, EventKind
+from watchsim.simulation.tally import Tally
 from watchsim.simulation.trajectory import Trajectory
 
 # Is what is kept of a run, flush by flush, what one would choose who had all of it before him?
@@ -337,10 +337,15 @@ def test_an_even_swing_without_noises(count: int) -> None:
 
 @pytest.mark.parametrize("parts", [2, 7, 100])
 def test_sums_do_not_depend_on_how_events_are_handed_over(parts: int) -> None:
-    tally = Tally(whole().scene, whole().pairs)
-    for part in np.array_split(whole().events, parts):
-        tally.fold(part)
-    assert tally.finished() == whole().sums
+    run = whole()
+    tally, rows = Tally(run.scene, run.pairs, run.slices), np.concatenate([run.t[:, None], run.q, run.u, run.a], axis=1)
+    tally.waits, done = True, 0
+    for part in np.array_split(run.events, parts):
+        until = int(np.searchsorted(run.t, part["t"][-1] - 0.01))  # the last events wait for their rows
+        tally.fold(part, rows[done:until])
+        done = until
+    tally.fold(run.events[:0], rows[done:])
+    assert tally.finished() == run.sums
 
 
 @pytest.mark.parametrize("record", ["statistics", "events", Recording(((1.0, 1.5),), "statistics")])

@@ -106,6 +106,15 @@ def test_correlated_dimensions_have_that_correlation_and_groups_one_draw():
     a, b = (Tolerance(key, 0.0, -3.0, 3.0, LENGTH, "normal", 1.0) for key in "ab")
     x, _ = drawn(Space((a, b), (Correlation(("a", "b"), -0.7),)), 4096)
     assert np.corrcoef(x.T)[0, 1] == pytest.approx(-0.7, abs=0.02)
+    widths = (("pitch", 1.0, ""), ("height", 1.0, "cut"), ("width", 2.0, "cut"))
+    teeth = (Tolerance(key, 0.0, -one, one, LENGTH, group=group, count=5) for key, one, group in widths)
+    space = Space((a, *teeth, b), (Correlation(("a", "b"), -0.7),))
+    each = np.corrcoef(drawn(space, 4096)[0].T)
+    assert len(space.draws) == 12 and space.names == ("a", "pitch", "cut", "b")
+    assert each[0, 11] == pytest.approx(-0.7, abs=0.02)
+    assert np.abs(each - np.diag(np.diag(each)))[:11, :11].max() < 0.1  # teeth have errors of their own
+    made = space.changes(space.shares(space.uniform([3], 0))[0])
+    assert made["width"] == pytest.approx(2.0 * np.array(made["height"])) and len(set(made["height"])) == 5
     together = Space((Tolerance("c", 1.0, -1.0, 1.0, LENGTH, group="oil"), Tolerance("d", 5.0, -2.0, 2.0, LENGTH, group="oil")))
     assert together.names == ("oil",)
     assert together.changes(np.array([0.75])) == {"c": 1.5, "d": 6.0}

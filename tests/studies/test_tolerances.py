@@ -219,6 +219,17 @@ def test_another_study_is_refused_before_anything_is_computed(desk, whole, monke
         ws.tolerance(other, 48, folder=desk / "whole", resume=True)
 
 
+def test_what_is_drawn_together_is_for_each_tooth_or_for_none(tmp_path):
+    head = '[scene]\ntitle = "watch"\n[design]\nof = "swiss_lever"\n[tolerances]\n'
+    line = '"bodies.wheel.teeth.%s" = { limits = "±1 µm", group = "cut"%s }\n'
+    each = ", each = true"
+    (tmp_path / "scene.toml").write_text(head + line % ("height", each) + line % ("width", each), encoding="utf-8")
+    assert [one.count for one in ws.load(tmp_path).tolerances] == [15, 15]
+    (tmp_path / "scene.toml").write_text(head + line % ("height", each) + line % ("width", ""), encoding="utf-8")
+    with pytest.raises(ws.SceneError, match=r"teeth.width.group\n.*write each = true for all of them"):
+        ws.load(tmp_path)
+
+
 def test_all_faults_are_reported_at_once(desk):
     base = (desk / "scene.toml").read_text(encoding="utf-8").partition("[tolerances]")[0]
     for line, message in FAULTS:

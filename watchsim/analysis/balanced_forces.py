@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from watchsim.contact.gaps import OPEN, STICK, closed_contacts, poses
 from watchsim.dynamics.bearings import LOAD_ROUNDS
-from watchsim.dynamics.forces import Seen, balance, line_spring_pulls, room
+from watchsim.dynamics.forces import Seen, balance, room, spring_pulls
 from watchsim.dynamics.moving_frame import inertial_rows
 from watchsim.mechanism.compile import Compiled
 from watchsim.model import Model
@@ -139,6 +139,14 @@ class Balanced(NamedTuple):
     acceleration: Array
 
 
+def pulled(model: Model, body: int, q: Array, u: Array) -> Array:
+    """The force of springs between points, and of its coil, on a body, N (n, 2)."""
+    found = np.zeros((len(q), 2))
+    if len(model.lines) or len(model.coils):
+        spring_pulls(model, body, np.ascontiguousarray(q), np.ascontiguousarray(u), found)
+    return found
+
+
 class Mechanism:
     """What is the same at every instant, looked up once: mobilities, dry friction of bearings, law of each contact."""
 
@@ -184,17 +192,10 @@ class Mechanism:
             weight = np.array([one.weight_x, one.weight_y])
             carried = np.einsum("k,nkx->nx", on_b.astype(float) - on_a, pressed) - weight
             carried -= u[:, j : j + 1] ** 2 * arm - found.acceleration[:, j : j + 1] * np.stack((-arm[:, 1], arm[:, 0]), axis=1)
-            carried -= self._pulled(int(one.body), q, u) + inertial(self.model, t, q, u, int(one.body))[0]
+            carried -= pulled(self.model, int(one.body), q, u) + inertial(self.model, t, q, u, int(one.body))[0]
             dry = np.array(dry)
             dry[:, j] += one.grip * (np.hypot(*carried.T) - np.hypot(*weight))
         return np.asarray(dry)
-
-    def _pulled(self, body: int, q: Array, u: Array) -> Array:
-        """The force of springs between points on a body, N (n, 2)."""
-        pulled = np.zeros((len(q), 2))
-        if len(self.model.lines):
-            line_spring_pulls(self.model, body, np.ascontiguousarray(q), np.ascontiguousarray(u), pulled)
-        return pulled
 
     def seen(self, t: Array, q: Array, u: Array, ids: NDArray[np.int64]) -> Seen:
         """Kinematics of these contacts, and all other forces."""

@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 from watchsim.analysis.balanced_forces import inertial
 from watchsim.analysis.forces import Forces, absolute, bearing_friction, forces
 from watchsim.dynamics.forces import line_spring_energies, line_spring_powers
+from watchsim.mechanism.coiled import of_coil
 from watchsim.mechanism.compile import Compiled
-from watchsim.model import DAMPING_LAWS, FREE, OVER_TIME, REPEATED, Model, resistance
+from watchsim.model import COIL_ENERGY, COIL_TORQUE, DAMPING_LAWS, FREE, OVER_TIME, REPEATED, Model, resistance
 from watchsim.scene.roles import keeps_time, roles
 from watchsim.scene.scene import STATISTICS
 from watchsim.scene.trains import start_poses
@@ -136,7 +137,7 @@ class Flows:
     damped  what damping and dry bearings of each coordinate have taken so far, J (rows, n)
     joined  what springs between bodies have given each coordinate so far, less what `damped` counts of theirs, J
     swept   integral of each coordinate over time so far, rad s
-    bent    integral over time of what is neither constant nor linear on each coordinate: weight, cubic springs, curb pins,
+    bent    integral over time of what is neither constant nor linear on each coordinate: weight, bent springs,
             drag, dry friction, N·m·s
     """
 
@@ -165,6 +166,8 @@ def flows(run: Trajectory, compiled: Compiled, rows: slice = slice(None)) -> Flo
     own[:, hung] -= np.asarray(c.weight_y)[hung] * np.sin(q[:, hung]) + np.asarray(c.weight_x)[hung] * np.cos(q[:, hung])
     own += 0.25 * np.asarray(c.cubic) * way**4
     own += 0.5 * np.asarray(c.pinned) * (way - np.clip(way, c.pin_low, c.pin_high)) ** 2
+    for k in np.flatnonzero(c.coil).tolist():
+        own[:, k] += of_coil(model, k, COIL_ENERGY, way[:, k])
     own[:, np.asarray(c.driven) != 0] = 0.0  # a prescribed motion holds no energy that counts
     stored = own.sum(axis=1)
     for joint in model.joints:
@@ -180,7 +183,7 @@ def flows(run: Trajectory, compiled: Compiled, rows: slice = slice(None)) -> Flo
     driven = _constant_work(model, 0.5 * step * (u[:-1] + u[1:]) + step * step / 12.0 * (a[:-1] - a[1:]))
     damped, joined, bent = (np.zeros_like(driven) for _ in range(3))
     moved, slowed = _changing(model)
-    curved = np.flatnonzero((c.weight_x != 0.0) | (c.weight_y != 0.0) | (c.cubic != 0.0) | (c.pinned != 0.0)).tolist()
+    curved = np.flatnonzero((c.weight_x != 0.0) | (c.weight_y != 0.0) | (c.bent != 0)).tolist()
     moved = sorted({*moved, *curved})
     if moved or slowed:
         place, speed = _position(step, (q, u, a), moved), _velocity(h, (u, a), sorted({*moved, *slowed}))
@@ -343,6 +346,8 @@ def _bent(model: Model, q: Row, u: Row, curved: list[int]) -> Array:
         way = q[k] - c.rest[k]
         torque[:, k] += np.cos(q[k]) * c.weight_y[k] - np.sin(q[k]) * c.weight_x[k] - c.cubic[k] * way**3
         torque[:, k] -= c.pinned[k] * (way - np.clip(way, c.pin_low[k], c.pin_high[k]))
+        if c.coil[k]:
+            torque[:, k] += of_coil(model, k, COIL_TORQUE, way)
     return torque
 
 

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.analysis.balanced_forces import Balanced, Mechanism, inertial, modes_in_force
+from watchsim.analysis.balanced_forces import Balanced, Mechanism, inertial, modes_in_force, pulled
 from watchsim.mechanism.backlash import rack_ways
 from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.scene.roles import loads
@@ -322,7 +322,7 @@ def _pressed(found: Balanced) -> Array:
 def _pivots(
     run: Trajectory, compiled: Compiled, motion: Motion, loads_found: Loads, meshed: list[Pressed]
 ) -> Iterator[tuple[str, Array]]:
-    """What the bearings in the movement take: change of momentum less weight less contacts, of a body with all it carries."""
+    """What the bearings in the movement take: change of momentum less all else, of a body with all it carries."""
     hung, weighed, _ = loads(run.scene.bodies)
     # The bodies of the model on both sides of each contact.
     contacts, primitives = compiled.model.contacts[loads_found.ids], compiled.model.primitives
@@ -340,7 +340,8 @@ def _pivots(
         change = turn[:, None] * np.stack((-moment[:, 1], moment[:, 0]), axis=1) - (spin * spin)[:, None] * moment
         pressed = np.einsum("k,nkx->nx", sign, loads_found.pressed) + sum(one.force for one in meshed if one.body in own)
         shaken = inertial(compiled.model, motion.t, motion.q, motion.u, i)[0]
-        yield body.name, change - load.mass * np.array(run.scene.gravity) - shaken - pressed
+        sprung = pulled(compiled.model, i, motion.q, motion.u)
+        yield body.name, change - load.mass * np.array(run.scene.gravity) - shaken - sprung - pressed
 
 
 def _drives(run: Trajectory, compiled: Compiled, load: Array, a: Array) -> Iterator[tuple[str, Array]]:

@@ -16,7 +16,7 @@ from watchsim.analysis.escape_wheel import missed_beats, never_touched, standsti
 from watchsim.analysis.flows import efficiency
 from watchsim.analysis.headlines import beats_csv, doubts, headlines, phases_csv
 from watchsim.analysis.timegrapher import timegrapher
-from watchsim.analysis.timing import Averages, Beats, averages, beats, last_window, whole_run
+from watchsim.analysis.timing import Averages, averages, beats, last_window, whole_run
 from watchsim.analysis.verdict import RUNS_THROUGH, verdict
 from watchsim.analysis.verdict_kinds import NOTHING, Verdict
 from watchsim.mechanism.check import notes
@@ -310,7 +310,7 @@ def _timing(run: Trajectory) -> dict[str, Any]:
         "beats": found.before + len(found),
         "whole_run": whole_run(run, found),
         "timegrapher": None if idle else timegrapher(run, found, window),
-        "missed_beats": None if idle else _missed(run, found),
+        "missed_beats": None if idle else _missed(run),
         "stopped": stands is not None,
         "stopped_message": stands.message if stands else None,
         **_judgement(judged),
@@ -345,6 +345,5 @@ def _timing_of(means: Averages | None) -> dict[str, Any]:
     }
 
 
-def _missed(run: Trajectory, found: Beats) -> int | None:
-    wheel = roles(run.scene).wheel
-    return missed_beats(run, wheel, found) if wheel and keeps_time(run.scene) else None
+def _missed(run: Trajectory) -> int | None:
+    return missed_beats(run) if roles(run.scene).wheel and keeps_time(run.scene) else None

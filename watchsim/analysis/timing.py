@@ -18,6 +18,8 @@ from watchsim.displays import notebook_html
 from watchsim.scene.roles import nominal_frequency, oscillator, oscillators, roles
 from watchsim.scene.scene import STATISTICS
 from watchsim.simulation.recording import (
+    LONGEST_STEP,
+    STILL,
     USUAL_PERIODS,
     USUAL_WINDOW,
     Pair,
@@ -27,13 +29,13 @@ from watchsim.simulation.recording import (
     unevenness,
 )
 from watchsim.simulation.state import EventKind
+from watchsim.simulation.tally import sums_of
 from watchsim.simulation.trajectory import Array, Trajectory
 from watchsim.storage.columns import blocks, let_go, rows_where
 
 # A scene may record a few windows of a long run only; interpolating across what was left out would invent numbers.
 
 AT_ONCE = 4096  # times that are looked up together
-LONGEST_STEP = 0.26  # periods: within a window rows are never further apart than a quarter of a swing
 
 
 def nominal_period(run: Trajectory, body: str) -> float:
@@ -137,14 +139,7 @@ def held(times: Column, kinds: Column, spans: Sequence[tuple[float, float]] = ()
 
 def holding_at_end(run: Trajectory) -> list[Pair]:
     """The pairs whose contact is in force when the run ends."""
-    last: dict[int, bool] = {}
-    for (part,) in blocks(run.events):
-        for contact, kind, value in zip(*(part[name].tolist() for name in ("contact", "kind", "value")), strict=True):
-            if kind in (EventKind.CLOSE, EventKind.OPEN):
-                last[contact] = kind == EventKind.CLOSE
-            elif kind == EventKind.HANDOVER:
-                last[int(value)], last[contact] = False, True
-    return [run.pairs[contact] for contact in sorted(last) if last[contact]]
+    return [run.pairs[contact] for contact in sums_of(run)["holding"]]
 
 
 # The first noise of a beat is the impulse pin meeting the fork. Rate and beat error are taken from it by every timegrapher,
@@ -159,7 +154,6 @@ def ticks(run: Trajectory, oscillator: str, starts: Array, ends: Array, half_per
 
 DAY = 86400.0
 HEARD = 0.8  # share of the half swings that must have a tick, for the ticks to be what the beat error is measured by
-STILL = 1e-13  # rad or m: half swings no larger are rounding, of a body at rest
 
 
 @dataclass(frozen=True)

@@ -15,12 +15,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from watchsim.analysis.escape_wheel import advance, missed_beats, standstill
-from watchsim.analysis.timing import Beats, Events, averages, beats, last_window
+from watchsim.analysis.escape_wheel import missed_beats, standstill
+from watchsim.analysis.timing import Beats, averages, beats, last_window
 from watchsim.analysis.verdict_kinds import (
     BACKWARDS,
     KNOCKS,
@@ -36,11 +36,13 @@ from watchsim.analysis.verdict_kinds import (
     torque_text,
     when,
 )
-from watchsim.analysis.watch import Arms, Face, Watch, arms, at_lever, face, in_force, unlocked, watch_of
+from watchsim.analysis.watch import Arms, Face, Watch, arms, arms_at, at_lever, face, in_force, unlocked, watch_of
 from watchsim.scene.roles import swings
-from watchsim.simulation.recording import LATE
+from watchsim.simulation.knock_tally import ANGLE, CONTACT, FIRST, LAST, PLACE, TOGETHER
 from watchsim.simulation.state import EventKind
+from watchsim.simulation.tally import sums_of
 from watchsim.simulation.trajectory import Array, Trajectory
+from watchsim.simulation.wheel_tally import FAST, trips_of
 from watchsim.storage.columns import rows_where
 
 # An amplitude settles like an exponential. Of three equal stretches of time in a row, with mean amplitudes a, b, c, what is
@@ -54,7 +56,7 @@ SLOWEST = 0.98  # ratio of steps, beyond which no end is foretold
 
 def unsettled(watch: Watch) -> Verdict | None:
     """None where the amplitude will change by less than 0.2 %."""
-    amplitude = np.degrees(watch.run.sums.get("late", watch.found.amplitude[-LATE:]))  # those before may be another motion
+    amplitude = np.degrees(sums_of(watch.run)["late"])  # those before may be another motion
     if len(amplitude) < FEWEST:
         words = f"not settled yet: {len(amplitude)} half swings are too few to tell how the watch goes"
         return Verdict(UNSETTLED, words, body=watch.oscillator)
@@ -100,7 +102,6 @@ def _rate(watch: Watch) -> str:
 
 
 RUNS_THROUGH = "runs through"
-FAST = 2.0  # times as many teeth as the oscillator could let go in that time
 
 
 def running_free(watch: Watch) -> tuple[float, str] | None:
@@ -113,10 +114,12 @@ def running_free(watch: Watch) -> tuple[float, str] | None:
     let_go = (end - start) / watch.found.nominal_period + 1.0
     if last - first <= FAST * let_go * watch.pitch:
         return None
-    rows = watch.run.t[watch.run.t <= end]
-    way = watch.progress(rows)
-    start = float(rows[np.argmin(way - FAST * watch.pitch / watch.found.nominal_period * rows)])  # from there on it gained
-    turns = (last - float(watch.progress(np.array([start]))[0])) / (2.0 * np.pi)
+    rows = watch.run.t[(watch.run.t >= start) & (watch.run.t <= end)]  # what every recording holds
+    behind = watch.progress(rows) - FAST * watch.pitch / watch.found.nominal_period * rows
+    start, least = sums_of(watch.run)["wheel"]["least"]  # from there on it gained
+    if behind.min() < least:
+        start, least = float(rows[np.argmin(behind)]), float(behind.min())
+    turns = (last - least - FAST * watch.pitch / watch.found.nominal_period * start) / (2.0 * np.pi)
     return start, f"{watch.wheel} {RUNS_THROUGH}, {turns:.3g} turns from {when(start)} to {when(end)}"
 
 
@@ -202,7 +205,6 @@ def _went_over(watch: Watch) -> float:
     return float(watch.run.t[away[-1]]) if len(away) and np.ptp(angles) > 0.0 else 0.0
 
 
-OUTSIDE = math.pi  # rad from rest: so far round the impulse pin cannot be in the slot
 SQUARE = (
     0.05  # of the distance from the staff: with less of an arm a blow does not turn the oscillator back (a dart on its roller)
 )
@@ -212,65 +214,50 @@ def knocking(watch: Watch) -> Verdict | None:
     """In the second half of the run, or its last window: a blow by the lever more than half a turn from rest, or by a stop."""
     blows = knocks(watch)
     start, end = last_window(watch.run, watch.found.nominal_period)
-    if not len(blows) or blows["t"][-1] < min(start, 0.5 * end):
+    if blows is None or blows.last < min(start, 0.5 * end):
         return None
-    swing = np.unique(np.searchsorted(watch.found.t, blows["t"]))
-    t = float(blows["t"][0])
-    pair = watch.run.pairs[int(blows["contact"][0])]
-    drive, means = watch.drive(t), averages(watch.found, (start, end))
-    where = degrees(abs(float(_angles(watch, blows["t"][-1:])[0])))
+    drive, means = watch.drive(blows.first), averages(watch.found, (start, end))
+    pair, where = watch.run.pairs[blows.contact], degrees(abs(blows.angle))
     other = pair.body_a if pair.body_b == watch.oscillator else pair.body_b
-    words = (
-        f"{when(t)}  the watch knocks: {watch.oscillator} strikes {other} from outside at {where}, {times(len(swing))} ({pair})"
-    )
-    words += f", under {torque_text(drive)} at {watch.wheel}"
+    words = f"{when(blows.first)}  the watch knocks: {watch.oscillator} strikes {other} from outside at {where}, "
+    words += f"{times(blows.count)} ({pair}), under {torque_text(drive)} at {watch.wheel}"
     if means.rate_s_per_d is not None and means.rate_s_per_d > 0.0:
         words += f"; the watch gallops, {means.rate_s_per_d:+.3g} s/d"
-    return Verdict(KNOCKS, words, t, watch.oscillator, str(pair), drive, len(swing))
+    return Verdict(KNOCKS, words, blows.first, watch.oscillator, str(pair), drive, blows.count)
 
 
-def knocks(watch: Watch) -> Events:
-    """The impacts that turn the oscillator back from outside, in order of time."""
-    if not len(watch.found):
-        return watch.run.events[:0]
-    others = watch.fixed | ({watch.lever} if watch.lever else set())
-    blows = watch.events(watch.oscillator, others, EventKind.IMPACT)
-    blows = blows[(blows["t"] >= watch.found.start[0]) & (blows["t"] <= watch.found.end[-1])]
-    stops = {number for number in np.unique(blows["contact"]).tolist() if _stop(watch, number)}
-    blows = blows[(np.abs(_angles(watch, blows["t"])) > OUTSIDE) | np.isin(blows["contact"], list(stops))]
-    square = {number for number in np.unique(blows["contact"]).tolist() if _turns_back(watch, blows, number)}
-    return blows[np.isin(blows["contact"], list(square))]
+@dataclass(frozen=True, slots=True)
+class Knocks:
+    """The impacts that turn the oscillator back from outside: the first with its contact, the last with how far from rest (rad)
+    that was, and at how many turning points; s."""
+
+    first: float
+    contact: int
+    last: float
+    angle: float
+    count: int
 
 
-def _stop(watch: Watch, number: int) -> bool:
-    pair = watch.run.pairs[number]
-    return bool({pair.body_a, pair.body_b} & watch.fixed)
+def knocks(watch: Watch) -> Knocks | None:
+    """None where there are none."""
+    sums = sums_of(watch.run)["knocks"]
+    rows = [row for row in sums["contacts"] if _turns_back(watch, int(row[CONTACT]), np.array(row[PLACE:]))]
+    if not rows:
+        return None
+    first, last = min(rows, key=lambda row: row[FIRST]), max(rows, key=lambda row: row[LAST])
+    square = {int(row[CONTACT]) for row in rows}
+    count = sum(row[TOGETHER] for row in sums["together"] if square.intersection(row[:TOGETHER]))
+    return Knocks(first[FIRST], int(first[CONTACT]), last[LAST], last[ANGLE], count)
 
 
-def _turns_back(watch: Watch, blows: Events, number: int) -> bool:
-    """Has the normal of this contact an arm on the oscillator? Judged at one of its blows; believed where none was recorded."""
-    at = blows["t"][blows["contact"] == number]
-    at = at[watch.recorded(at)]
-    if not len(at) or not watch.has_shapes:
+def _turns_back(watch: Watch, number: int, place: Array) -> bool:
+    """Has the normal of this contact an arm on the oscillator, at the coordinates of its first blow? Believed where unknown."""
+    if not watch.has_shapes or not len(place) or not np.isfinite(place).all():
         return True
-    found = arms(watch.run, watch.compiled, float(at[0]), [number])
+    found = arms_at(watch.run, watch.compiled, 0.0, place, [number])
     x, y, _ = found.places[watch.oscillator]
     far = math.hypot(found.point[0, 0] - x, found.point[0, 1] - y)
     return abs(found.of(0, watch.oscillator)[0]) > SQUARE * far
-
-
-def _angles(watch: Watch, times: Array) -> Array:
-    """How far the oscillator is from rest at times within its half swings, rad: these taken for sines."""
-    found = watch.found
-    i = np.searchsorted(found.end, times)
-    late = times >= found.t[i]
-    reach, turn = np.where(late, found.end_at[i], found.start_at[i]), np.where(late, found.end[i], found.start[i])
-    share = np.minimum((times - found.t[i]) / np.where(turn == found.t[i], np.inf, turn - found.t[i]), 1.0)
-    angles: Array = (reach - watch.rest) * np.sin(0.5 * math.pi * share)
-    return angles
-
-
-AHEAD = 1  # half pitches gained within two half swings
 
 
 def tripping(watch: Watch) -> Verdict | None:
@@ -292,35 +279,14 @@ def _running_free(watch: Watch) -> Verdict | None:
 
 
 def _run_past(watch: Watch) -> Verdict | None:
-    moved = advance(watch.run, watch.wheel, watch.found)
-    if moved is None or len(moved.angle) < 2:
+    trips = trips_of(sums_of(watch.run))
+    if trips is None:
         return None
-    gained = np.rint((moved.angle - moved.angle[0]) / moved.half_pitch) - moved.half_swings
-    before = np.maximum(gained[1:-1], gained[:-2])
-    tripped = np.flatnonzero(gained[2:] - before >= AHEAD) + 2
-    if gained[1] - gained[0] >= 2 * AHEAD:
-        tripped = np.append(1, tripped)
-    if not len(tripped):
-        return None
-    ends = watch.found.end[(moved.half_swings[tripped] - watch.found.before).astype(int) - 1]
-    starts = watch.found.start[(moved.half_swings[tripped] - watch.found.before).astype(int) - 1]
-    t, pair = _slip(watch, float(starts[0]), float(ends[0]))
-    drive = watch.drive(t)
-    words = f"{when(t)}  the watch trips: {watch.wheel} ran past {watch.lever or watch.oscillator} {times(len(tripped))}"
+    pair = None if trips.contact < 0 else str(watch.run.pairs[trips.contact])
+    drive = watch.drive(trips.t)
+    words = f"{when(trips.t)}  the watch trips: {watch.wheel} ran past {watch.lever or watch.oscillator} {times(trips.count)}"
     words += (f", first from {pair}" if pair else "") + f", under {torque_text(drive)}"
-    return Verdict(TRIPS, words, t, watch.wheel, pair, drive, len(tripped))
-
-
-def _slip(watch: Watch, start: float, end: float) -> tuple[float, str | None]:
-    """The last contact that the wheel lost before it had gone too far between two turning points (s)."""
-    held = watch.events(watch.wheel, {watch.lever or watch.oscillator}, EventKind.OPEN, EventKind.IMPACT)
-    held = held[(held["t"] >= start) & (held["t"] <= end)]
-    if not len(held) or watch.pitch is None:
-        return start, None
-    way = watch.progress(held["t"]) - watch.progress(np.array([start]))[0]
-    within = held[way <= 0.75 * watch.pitch]
-    last = within[-1] if len(within) else held[0]
-    return float(last["t"]), str(watch.run.pairs[int(last["contact"])])
+    return Verdict(TRIPS, words, trips.t, watch.wheel, pair, drive, trips.count)
 
 
 def _mislocked(watch: Watch) -> Verdict | None:
@@ -347,7 +313,8 @@ def standing(watch: Watch) -> Verdict | None:
     why, pair = "", None
     if watch.lever is not None and watch.has_shapes and watch.recorded(np.array([watch.run.simulated]))[0]:
         why, pair = _why(watch, watch.lever)
-    last = f". Last amplitude {watch.found.amplitude_deg[-1]:.3g}°" if len(watch.found) else ""
+    late = sums_of(watch.run)["late"]
+    last = f". Last amplitude {math.degrees(late[-1]):.3g}°" if late else ""
     words = f"{when(stands.since)}  the watch stands: " + (why + last if why else stands.message)
     return Verdict(STOPS, words, stands.since, watch.wheel, pair, watch.drive(watch.run.simulated))
 
@@ -355,7 +322,7 @@ def standing(watch: Watch) -> Verdict | None:
 def _why(watch: Watch, lever: str) -> tuple[str, str | None]:
     """A sentence, and the contact of wheel and lever in words."""
     run, end = watch.run, watch.run.simulated
-    holding = in_force(run, [end])[0]
+    holding = sums_of(run)["holding"]
     sides = {number: {run.pairs[number].body_a, run.pairs[number].body_b} for number in holding}
     teeth = [number for number in holding if sides[number] == {watch.wheel, lever}]
     pins = [number for number in holding if sides[number] == {watch.oscillator, lever}]
@@ -474,8 +441,8 @@ def _judged(watch: Watch) -> Verdict:
 def _but(watch: Watch) -> Iterator[str]:
     """What did not go well before."""
     blows = knocks(watch)
-    if len(blows):
-        yield f"after it knocked until {when(float(blows['t'][-1]))}"
-    missed = missed_beats(watch.run, watch.wheel, watch.found)
+    if blows is not None:
+        yield f"after it knocked until {when(blows.last)}"
+    missed = missed_beats(watch.run)
     if missed:
         yield f"but missed {missed} {'beat' if missed == 1 else 'beats'}"

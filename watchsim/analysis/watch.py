@@ -26,7 +26,7 @@ from watchsim.analysis.timing import (
 from watchsim.geometry.loops import Loop, points_along
 from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.scene.roles import drive_direction, keeps_time, may_lock, oscillators, partners, pitch, roles, toothed_sides
-from watchsim.scene.scene import STATISTICS, Scene
+from watchsim.scene.scene import Scene
 from watchsim.scene.teeth import touching_loops, train
 from watchsim.simulation import EVENT_DRIVEN
 from watchsim.simulation.recording import Pair
@@ -136,7 +136,11 @@ class Arms:
 
 def arms(run: Trajectory, compiled: Compiled, t: float, contacts: list[int]) -> Arms:
     """Of the contacts with these numbers at a recorded time; loads are those of bodies that stand still."""
-    q, _ = run.at(t)
+    return arms_at(run, compiled, t, run.at(t)[0], contacts)
+
+
+def arms_at(run: Trajectory, compiled: Compiled, t: float, q: Array, contacts: list[int]) -> Arms:
+    """The same at coordinates q (n,) of the scene."""
     places = {body.name: run.pose_of(body.name, q) for body in run.scene.bodies}
     q = absolute(compiled, q[None], False)
     seen = Mechanism(compiled).seen(np.array([float(t)]), q, np.zeros(q.shape), np.array(contacts, np.int64))
@@ -224,8 +228,8 @@ class Watch:
 
     @property
     def has_modes(self) -> bool:
-        """Whether the events say at any time which contacts are in force."""
-        return self.run.method == EVENT_DRIVEN and self.run.keep != STATISTICS
+        """Whether the events say which contacts are in force."""
+        return self.run.method == EVENT_DRIVEN
 
     @cached_property
     def teeth(self) -> Teeth | None:

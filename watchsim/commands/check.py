@@ -53,7 +53,7 @@ def run(args: argparse.Namespace) -> int:
     _check_options(args)
     from watchsim.commands.inputs import load_scene, secured_file
     from watchsim.drawing.findings import Finding
-    from watchsim.escapement.function_report import judgements, statics, text
+    from watchsim.escapement.function_report import draw_left, judgements, statics, text
     from watchsim.escapement.measure import measure
     from watchsim.mechanism.check import check_report, check_text, modelled_pairs
     from watchsim.mechanism.compile import compile_scene
@@ -102,7 +102,7 @@ def run(args: argparse.Namespace) -> int:
     if args.json:
         print_json(report)
     else:
-        print(check_text(report, scene, text(function)))
+        print(check_text(report, scene, [*text(function), *draw_left(scene, function)]))
         if turned is not None:
             print(turned)
     if wrong:

@@ -176,7 +176,6 @@ def write_study(folder: Path, numbers: dict[str, Any], table: dict[str, list[Any
 
     Those of an earlier study are there until then. InputError where numbers and table had to go elsewhere.
     """
-    from watchsim.render.style import save
     from watchsim.storage.destination import write_elsewhere
     from watchsim.storage.write import write_file
 
@@ -190,8 +189,11 @@ def write_study(folder: Path, numbers: dict[str, Any], table: dict[str, list[Any
     from watchsim.studies.workers import FIGURES, FILES
 
     drawn = [] if figure is None or stopping.requested() else [f"{name}{ending}" for ending in FIGURES]
-    for file in drawn:
-        write_file(folder / file, lambda path: save(figure, path), "the plot")
+    if drawn:
+        from watchsim.render.style import save  # half a second to load
+
+        for file in drawn:
+            write_file(folder / file, lambda path: save(figure, path), "the plot")
     for file in set(FILES) - {*files, *drawn}:
         _remove(folder / file)
 

@@ -321,6 +321,7 @@ class PairSearch:
         """`loose`: primitives of either body that do not share the symmetry of its cells."""
         pair = model.pairs[p]
         self._motion, self._clearance = CellMotion(model.bodies, pair), float(pair.clearance)
+        self._turns = [int(pair[f"wrap{i}"]) for i in range(pair.axes)]
         self._regions = Regions(model, p)
         ids = model.near[pair.near_start : pair.near_stop]
         circle, met = model.contacts.a[ids], model.contacts.b[ids]
@@ -369,17 +370,29 @@ class PairSearch:
         Candidates are numbered from the pair's first contact.
         """
         at, room = (index + 0.5) * self._motion.sizes, (0.5 + MARGIN) * self._motion.sizes
-        found = [self._alike(at, room), *(loose.candidates(at, room) for loose in self._loose)]
+        found = [self._alike(at, room, self._block(index)), *(loose.candidates(at, room) for loose in self._loose)]
         found.append((np.repeat(np.arange(len(at)), len(self._always)), np.tile(self._always, len(at))))
         cell, local = (np.concatenate(parts) for parts in zip(*found, strict=True))
         return np.bincount(cell, minlength=len(at)), local[np.lexsort((local, cell))]
 
-    def _alike(self, at: Array, room: Array) -> tuple[Integers, Integers]:
-        """(cells, contacts) that could touch within `room` of the cells' centres `at`, but for the loose ones."""
+    def _block(self, index: Integers) -> tuple[Array, Array]:
+        """Centre of the block of cell coordinates that holds these cells, and how far it reaches along each axis.
+
+        Where a whole turn lies between cells, such as the first and the last one, the block goes the short way.
+        """
+        ends = []
+        for cells, turn in zip(np.sort(index, axis=0).T, self._turns, strict=True):
+            widest = int(np.argmax(np.diff(cells, append=cells[0] + turn))) + 1 if turn else len(cells)
+            ends.append((cells[0], cells[-1]) if widest == len(cells) else (cells[widest] - turn, cells[widest - 1]))
+        low, high = np.array(ends).T
+        return 0.5 * (low + high + 1) * self._motion.sizes, (0.5 * (high - low + 1) + MARGIN) * self._motion.sizes
+
+    def _alike(self, at: Array, room: Array, block: tuple[Array, Array]) -> tuple[Integers, Integers]:
+        """(cells, contacts) that could touch within `room` of the cells' centres `at`, all of them in `block`, but for the
+        loose ones."""
         import shapely
 
-        low, high = at.min(axis=0), at.max(axis=0)
-        mover, other = self._in_block(0.5 * (low + high), 0.5 * (high - low) + room)
+        mover, other = self._in_block(*block)
         used, row = np.unique(mover, return_inverse=True)
         if len(used) == 0:
             return np.zeros(0, np.int64), np.zeros(0, np.int64)

@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 
 from watchsim.contact.gaps import BACKWARD, FORWARD
-from watchsim.dynamics.forces import line_spring_pull
+from watchsim.dynamics.forces import spring_pull
 from watchsim.dynamics.moving_frame import inertial_on
 from watchsim.jit import kernel
 from watchsim.tolerances import LOAD_ROUGH, LOAD_SETTLED
@@ -28,7 +28,7 @@ def begin_loads(model, t, q, u, system):
         angle = body.ratio * q[i] + body.phase
         c, s = math.cos(angle), math.sin(angle)
         x, y = c * bearing.moment_x - s * bearing.moment_y, s * bearing.moment_x + c * bearing.moment_y
-        fx, fy = line_spring_pull(model, bearing.body, q, u)
+        fx, fy = spring_pull(model, bearing.body, q, u)
         ix, iy = inertial_on(model, bearing.body, t, q, u)
         system.arm[p, 0], system.arm[p, 1] = x, y
         system.pull[p, 0] = -u[i] * u[i] * x - bearing.weight_x - fx - ix

@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 
 from watchsim.contact.cell_lookup import along
 from watchsim.contact.gaps import BACKWARD, FORWARD, OPEN, STICK, contact_kinematics, place, shape_of_contact
+from watchsim.dynamics.coils import coil_energy, coil_pull, coil_value
 from watchsim.dynamics.moving_frame import add_inertial_forces, inertial_power, next_jolt
 from watchsim.jit import entry, hot_kernel, kernel
-from watchsim.model import FREE, OVER_TIME, PIVOT, REPEATED, SLIDE, resistance
+from watchsim.model import COIL_TORQUE, FREE, OVER_TIME, PIVOT, REPEATED, SLIDE, resistance
 from watchsim.tolerances import KNOT_ROUNDING
 
 # What do springs between points of two bodies do?
@@ -88,9 +89,11 @@ def add_line_springs(model, q, u, out_h):
 
 
 @kernel
-def line_spring_pull(model, b, q, u):
-    """The force of all of them on body b, N."""
+def spring_pull(model, b, q, u):
+    """The force of all of them, and of its hairspring's coil, on body b, N."""
     fx, fy = 0.0, 0.0
+    if len(model.coils) > 0 and model.bodies[b].motion == PIVOT:
+        fx, fy = coil_pull(model, model.bodies[b].first, q)
     for j in range(len(model.lines)):
         line = model.lines[j]
         if b in (line.a, line.b):
@@ -113,10 +116,10 @@ def line_spring_energy(model, q):
 
 
 @entry
-def line_spring_pulls(model, b, q, u, out_pull):
+def spring_pulls(model, b, q, u, out_pull):
     """For rows of coordinates: their force on body b, N (rows, 2)."""
     for row in range(len(q)):
-        out_pull[row, 0], out_pull[row, 1] = line_spring_pull(model, b, q[row], u[row])
+        out_pull[row, 0], out_pull[row, 1] = spring_pull(model, b, q[row], u[row])
 
 
 @entry
@@ -256,19 +259,28 @@ def driving_force(model, i, q):
 
 
 @kernel
-def bent_force(coordinate, q):
-    """The part of a spring's force that goes with the cube of the way from rest, and what curb pins add beyond them."""
-    way = q - coordinate.rest
-    beyond = way - min(max(way, coordinate.pin_low), coordinate.pin_high)
-    return -coordinate.cubic * way * way * way - coordinate.pinned * beyond
+def beyond_pins(coordinate, way):
+    """How far a coil is bent beyond the pin it bears on, rad."""
+    return way - min(max(way, coordinate.pin_low), coordinate.pin_high)
 
 
 @kernel
-def bent_energy(coordinate, q):
-    """What that part stores, J."""
+def bent_force(model, i, q):
+    """What the spring of coordinate i does beyond its stiffness: by the cube of the way from rest, curb pins and its coil."""
+    coordinate = model.coordinates[i]
     way = q - coordinate.rest
-    beyond = way - min(max(way, coordinate.pin_low), coordinate.pin_high)
-    return 0.25 * coordinate.cubic * way * way * way * way + 0.5 * coordinate.pinned * beyond * beyond
+    force = -coordinate.cubic * way * way * way - coordinate.pinned * beyond_pins(coordinate, way)
+    return force + coil_value(model, coordinate.coil, COIL_TORQUE, way) if coordinate.coil > 0 else force
+
+
+@kernel
+def bent_energy(model, i, q):
+    """What that part stores, J."""
+    coordinate = model.coordinates[i]
+    way = q - coordinate.rest
+    beyond = beyond_pins(coordinate, way)
+    energy = 0.25 * coordinate.cubic * way * way * way * way + 0.5 * coordinate.pinned * beyond * beyond
+    return energy + coil_energy(model, coordinate.coil, way) if coordinate.coil > 0 else energy
 
 
 damping_rate = kernel(resistance)
@@ -337,7 +349,7 @@ def forces(model, t, q, u, out_h):
             driving_force(model, i, q[i]) - coordinate.stiffness * (q[i] - coordinate.rest) + damping_force(model, i, u[i])
         )
         if coordinate.bent:
-            out_h[i] += bent_force(coordinate, q[i])
+            out_h[i] += bent_force(model, i, q[i])
     for j in range(len(model.joints)):
         joint = model.joints[j]
         torque = joint_force(joint, q, u)
@@ -414,7 +426,7 @@ def stored_energy(model, q, u):
         way = q[i] - coordinate.rest
         energy += 0.5 * (coordinate.mass * u[i] * u[i] + coordinate.stiffness * way * way)
         if coordinate.bent:
-            energy += bent_energy(coordinate, q[i])
+            energy += bent_energy(model, i, q[i])
     return energy + joint_energy(model, q) + line_spring_energy(model, q)
 
 

@@ -420,9 +420,16 @@ def _peak(function: Callable[[list[float]], list[float]], places: list[float]) -
         return places[i], values[i]
     low, high = places[max(i - 1, 0)], places[min(i + 1, len(places) - 1)]
     best = (places[i], values[i])
+    one, two = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
+    first, second = function([one, two])
     while abs(high - low) > FINE:
-        one, two = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
-        first, second = function([one, two])
         best = max(best, (one, first), (two, second), key=lambda pair: pair[1])
-        low, high = (low, two) if first > second else (one, high)
+        if first > second:
+            high, two, second = two, one, first
+            one = high - GOLDEN * (high - low)
+            (first,) = function([one])
+        else:
+            low, one, first = one, two, second
+            two = low + GOLDEN * (high - low)
+            (second,) = function([two])
     return best

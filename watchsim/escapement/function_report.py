@@ -55,9 +55,9 @@ def judgements(scene: Scene, function: Function) -> tuple[Judgement, ...]:
     """All rules that are not kept, those of the stones first."""
     found: list[Judgement] = []
     if function.pallets is not None and function.parts is not None:
-        friction = _friction(scene, function)
-        for name, one in zip(NAMES, function.pallets, strict=True):
-            found += _stone(name, one, friction, function.parts.detached)
+        friction, held = _friction(scene, function), held_by_pivot(scene, function)
+        for name, one, pivot in zip(NAMES, function.pallets, held, strict=True):
+            found += _stone(name, one, (friction, pivot), function.parts.detached)
         found += _drops(function.pallets)
     if function.fork is not None:
         found += _fork(scene, function.fork)
@@ -72,12 +72,45 @@ def _friction(scene: Scene, function: Function) -> float:
     return max((one.friction for one in scene.contacts if {side.body for side in one.sides} == both), default=0.0)
 
 
-def _stone(name: str, one: Pallet, friction: float, detached: bool) -> Iterator[Judgement]:
-    hold = math.degrees(math.atan(friction))
+def held_by_pivot(scene: Scene, function: Function) -> tuple[float, float]:
+    """Draw (rad) that friction in the lever's pivot takes on the entry and exit stone.
+
+    The pressure turns the lever only where it passes outside the pivot's circle of friction, of radius μ r (r sin atan μ with
+    play): at an arm d that takes asin(μ r / d) of the draw beside the face's angle of friction. The lever's weight is left out.
+    """
+    if function.arms is None or function.parts is None:
+        return 0.0, 0.0
+    bearings = [one for one in scene.bearings if one.body == function.parts.lever]
+    # With play the pivot leans on its hole by Coulomb's law; else friction is that of the whole load.
+    circle = sum(one.radius * (math.sin(math.atan(one.friction)) if one.play else one.friction) for one in bearings)
+    first, second = (math.asin(min(circle / arm, 1.0)) for arm in function.arms)
+    return first, second
+
+
+def draw_left(scene: Scene, function: Function) -> Iterator[str]:
+    """What friction leaves of the draw, in words, where the lever's pivot feels its load."""
+    if function.arms is None or function.pallets is None or not any(held_by_pivot(scene, function)):
+        return
+    faces, pivots = math.atan(_friction(scene, function)), held_by_pivot(scene, function)
+    left = [math.degrees(_draw(one) - faces - pivot) for one, pivot in zip(function.pallets, pivots, strict=True)]
+    yield f"      {'draw left by friction':24}" + "".join(f"{value:>13.3f}°" for value in left)
+    taken = ", ".join(f"{math.degrees(pivot):.3f}°" for pivot in pivots)
+    yield f"      {'':24}friction on the faces takes {math.degrees(faces):.3f}°, that of the lever's pivot {taken}"
+
+
+def _draw(one: Pallet) -> float:
+    """The least of a stone, rad."""
     known = (each for quantity in (one.draw, one.draw_end) for each in (quantity.value, quantity.worst))
-    draw = math.degrees(min((each for each in known if not math.isnan(each)), default=math.nan))
+    return min((each for each in known if not math.isnan(each)), default=math.nan)
+
+
+def _stone(name: str, one: Pallet, held: tuple[float, float], detached: bool) -> Iterator[Judgement]:
+    friction, pivot = held
+    hold = math.degrees(math.atan(friction) + pivot)
+    draw = math.degrees(_draw(one))
     if detached and draw <= hold:
-        message = f"the draw of the {name} stone falls to {draw:.2f}°; friction {friction:g} holds up to {hold:.2f}°"
+        both = f"friction {friction:g}" + (f" with that of the pivot ({math.degrees(pivot):.2f}°)" if pivot else "")
+        message = f"the draw of the {name} stone falls to {draw:.2f}°; {both} holds up to {hold:.2f}°"
         fix = "The lever is not drawn to its bank: turn the stone to more draw."
         yield Judgement("draw", "warning", draw, hold, message, fix, "draw above the angle of friction", "Coulomb; " + PLAYTNER)
     lock = math.degrees(min(one.lock.value, one.lock.worst, key=lambda value: value))

@@ -300,6 +300,14 @@ def draw_angle(wheel: Wheel, rest: Rest, pivot: tuple[float, float], side: float
     return math.asin(max(-1.0, min(1.0, side * opening / arm)))
 
 
+def least_arm(wheel: Wheel, beats: Sequence[Passage], side: float) -> float:
+    """Of what locks on the bank of that side: the least distance of the touched points from the lever's pivot, m."""
+    pivot = wheel.hands.pivot(wheel.parts.lever, wheel.at(0.0, 0.0))
+    rests = [rest for one in beats if one.side == side for rest in (one.start, one.unlocked)]
+    places = [wheel.hands.meeting(rest.contact, wheel.at(rest.lever, rest.wheel)).point for rest in rests]
+    return min(math.dist(place, pivot) for place in places)
+
+
 def _on_round_pin(hands: Hands, rest: Rest) -> bool:
     """Does a corner of a tooth lie on the round of a pin?"""
     stone = hands.model.primitives[rest.stone]

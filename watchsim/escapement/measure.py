@@ -11,7 +11,7 @@ import numpy as np
 from watchsim.analysis.watch import Teeth, teeth
 from watchsim.escapement.by_hand import SLACK, Hands, Parts, Rest, Stretch, Sweep, Wheel, parts_of
 from watchsim.escapement.fork_and_pin import Balance, Direct, Entry, Fork, NotMeasured, Passage, Safety, fork, safety
-from watchsim.escapement.impulses import Impulse, Pallet, Roller, impulse, pallet
+from watchsim.escapement.impulses import Impulse, Pallet, Roller, impulse, least_arm, pallet
 from watchsim.escapement.turning import LEVEL
 from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.scene.roles import hinged_pallets, oscillators, pitch
@@ -125,7 +125,7 @@ class Function:
     counter-clockwise) each of them locks, `banks` are the lever's angles there; `lever_rest` is the angle half way between
     them. `passages` are the first tooth's, for pictures: entry, exit. `impulses` belong to the beats that begin on the upper
     and on the lower bank, as `fork` does; None where the wheel need not run after an impulse stone. `swung` is, for an anchor
-    that has no bank, how far it was turned to either side.
+    that has no bank, how far it was turned to either side. `arms` are those of the pressure that draws the lever, m.
     """
 
     parts: Parts | None
@@ -139,6 +139,7 @@ class Function:
     impulses: tuple[Impulse, Impulse] | None = None
     missing: tuple[tuple[str, str], ...] = ()
     swung: tuple[float, float] | None = None
+    arms: tuple[float, float] | None = None
 
 
 def measure(scene: Scene, compiled: Compiled | None = None, few: int | None = None, fork_too: bool = True) -> Function:
@@ -156,7 +157,8 @@ def measure(scene: Scene, compiled: Compiled | None = None, few: int | None = No
     missing: list[tuple[str, str]] = []
     hands = Hands(compiled)
     whole = pitch(scene, parts.wheel)
-    toothed = None if whole is None else teeth(scene, parts.wheel) or Teeth(whole, 0.0, 0.0)
+    numbered = None if few else teeth(scene, parts.wheel)  # of alike teeth it does not matter which one is which
+    toothed = None if whole is None else numbered or Teeth(whole, 0.0, 0.0)
     if toothed is None or not len(parts.to_wheel):
         why = f"{parts.wheel} has no equal teeth" if toothed is None else f"{parts.wheel} and {parts.lever} never touch"
         return Function(parts, missing=(("geometry of function", why),))
@@ -185,7 +187,9 @@ def measure(scene: Scene, compiled: Compiled | None = None, few: int | None = No
         missing.append(("lift angle of the balance, shake of the pin, safety action", str(reason)))
     if (made is not None or not fork_too) and guards is None:
         missing.append(("freedoms of guard pin and horns", f"nothing but the pin stops {parts.lever} between its banks"))
-    return Function(parts, number, banks, pallets, sides, (shown[0], shown[1]), made, guards, pushes, tuple(missing))
+    arms = least_arm(wheel, beats, sides[0]), least_arm(wheel, beats, sides[1])
+    both = shown[0], shown[1]
+    return Function(parts, number, banks, pallets, sides, both, made, guards, pushes, tuple(missing), arms=arms)
 
 
 def _no_lock(parts: Parts, hinged: tuple[str, ...]) -> str:

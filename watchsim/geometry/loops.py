@@ -129,6 +129,7 @@ def total_length(loops: Iterable[Loop]) -> float:
 
 Ints = NDArray[np.int64]
 
+FEW_EDGES = 200  # up to that many, all pairs are compared
 IN_CELL = 24  # edges in a cell that is refined no further
 DEEPEST = 30  # levels: cells of a billionth of the drawing
 GROWTH = 64  # entries per edge; edges that run along each other could be cut into cells for ever
@@ -152,6 +153,11 @@ def near_pairs(table: Table, reach: float) -> Pairs:
     count = len(table.box)
     if count < 2:
         return Pairs(np.empty(0, np.int64), np.empty(0, np.int64), ())
+    if count <= FEW_EDGES and count * count <= MOST_PAIRS:
+        lower, upper = table.box[:, :2], table.box[:, 2:] + reach
+        near = (lower[:, None] <= upper).all(axis=2)
+        first, second = np.nonzero(np.triu(near & near.T, 1))
+        return Pairs(first, second, ())
     low = table.box[:, :2].min(axis=0)
     width = float((table.box[:, 2:].max(axis=0) - low).max()) * (1.0 + 1e-12) + reach
     edge, cell = np.arange(count), np.zeros((count, 2), np.int64)

@@ -15,6 +15,7 @@ import numpy as np
 from watchsim.contact.cell_frames import angle_of
 from watchsim.contact.cells import choose_cells
 from watchsim.mechanism.backlash import with_racks
+from watchsim.mechanism.coiled import coiled
 from watchsim.mechanism.contacts import coordinates_of_lines, declared_contacts, features, line_springs, near_contacts
 from watchsim.mechanism.play import in_the_middle, loose, widen, with_holes
 from watchsim.mechanism.shaken import feels, shaken
@@ -209,7 +210,7 @@ def _spring_up(scene: Scene, targets: _Targets) -> None:
         if spring.curb is not None:
             row.pinned = spring.stiffness * spring.curb.share / (1.0 - spring.curb.share)
             row.pin_low, row.pin_high = spring.curb.offset - spring.curb.gap, spring.curb.offset + spring.curb.gap
-        if spring.cubic or spring.curb is not None:
+        if spring.cubic or spring.curb is not None or spring.wound is not None:
             row.bent = 1
 
 
@@ -397,7 +398,10 @@ def compiled_anew(scene: Scene, prefilter: bool) -> Compiled:
         if loaded or feels(row, scene.bodies[row.body].motion, turns):
             first = int(bodies[row.body].first)
             forced.parts[0].linear[first : first + (3 if bodies[row.body].motion == FREE else 1)] = 0
-    parts = (bodies, *forced.parts, primitives, contacts, laws, pairs, near, shocks, jolts, heavy)
+    springs, coils, terms = coiled(scene)
+    for number, spring in enumerate(springs):
+        forced.parts[0].coil[slices[spring.body].stop - 1] = 1 + number
+    parts = (bodies, *forced.parts, primitives, contacts, laws, pairs, near, shocks, jolts, heavy, coils, terms)
     model = Model(*(frozen(part) for part in parts))
     with_play = frozenset(loose(declared))
     seen = model._replace(bodies=frozen(middle[0]), primitives=frozen(middle[1])) if with_play else None

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+from watchsim.mechanism.coiled import coil_lines
 from watchsim.model import DAMPING_LAWS
 from watchsim.scene.forces import Damping, LineSpring, Mainspring, Spring
 from watchsim.scene.keys import DAMPING
@@ -87,6 +88,8 @@ def _distance_lines(scene: Scene) -> Iterator[str]:
 def _force_lines(scene: Scene) -> Iterator[str]:
     for spring in scene.springs:
         yield f"  spring on {_ends(spring.body, spring.against)}: {_spring(scene, spring)}"
+        if spring.wound is not None:
+            yield from coil_lines(spring)
     yield from map(_line_spring, scene.line_springs)
     yield from (_swing(scene, one) for one in oscillators(scene) if one.weight)
     for torque in scene.torques:

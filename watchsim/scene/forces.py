@@ -32,8 +32,9 @@ class Curb:
 class Spring:
     """A spring: -stiffness (q - rest) - cubic (q - rest)³, N·m/rad or N/m, N·m/rad³ or N/m³.
 
-    `frequency` (Hz) where that is how it was given; `coil` is how it is drawn. At `stop` (rad or m) the body comes to a stop on
-    its way to `rest`, with impacts of Poisson's `restitution`.
+    `frequency` (Hz) where that is how it was given; `coil` is how it is drawn, `wound` how it bends, with the weight of
+    `coil_mass` (kg). At `stop` (rad or m) the body comes to a stop on its way to `rest`, with impacts of Poisson's
+    `restitution`.
     """
 
     body: str
@@ -46,6 +47,8 @@ class Spring:
     restitution: float = 0.0
     cubic: float = 0.0
     curb: Curb | None = None
+    wound: Coil | None = None
+    coil_mass: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

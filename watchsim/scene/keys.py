@@ -234,6 +234,10 @@ COIL: Keys = {
     "stud": _angle("its direction"),
     "width": _length("of the strip", default=3e-5, limits=_above_zero("it is seen from above"), absent="0.03 mm"),
 }
+WOUND: Keys = {
+    **COIL,
+    "mass": Key(units.MASS, doc="of the strip, whose weight acts", limits=_not_negative(), default=0.0, absent="none"),
+}
 LEAF: Keys = {
     "modulus": Key(units.PRESSURE, doc="of elasticity", required=True, limits=_above_zero("it is the modulus of elasticity")),
     "length": _length(
@@ -274,6 +278,7 @@ SPRING: Keys = {
         instead_of=("frequency", "leaf"),
     ),
     "cubic": Key(units.ROTARY_CUBIC, units.LINEAR_CUBIC, doc="stiffness that grows with the square of the way from rest"),
+    "coil": Key(doc="the hairspring as it bends, presses on its pivot and weighs", inner=WOUND, form=TABLE),
     "curb": Key(doc="two pins between which a hairspring plays", inner=CURB, form=TABLE),
     "rest": Key(units.ANGLE, units.LENGTH, doc="where it does not act", instead_of=("preload",)),
     "draw": Key(doc="the hairspring that pictures show", inner=COIL, form=TABLE),

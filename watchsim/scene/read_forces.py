@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from watchsim import units
+from watchsim.geometry.elastic_coil import bending
 from watchsim.geometry.hairspring import Coil
 from watchsim.geometry.primitives import Point
 from watchsim.model import DAMPING_LAWS
@@ -24,6 +25,7 @@ from watchsim.scene.keys import (
     MOST_TURNS,
     SPRING,
     TORQUE,
+    WOUND,
     Keys,
     nearest,
 )
@@ -51,18 +53,45 @@ def read_coil(table: Table, body: Body | None) -> Coil | None:
     if body is not None and body.motion != "pivot":
         table.fault("draw", f'a hairspring is wound about a pivot, and motion of {body.name} is "{body.motion}"')
         return None
-    if not isinstance(table.mapping["draw"], dict):
-        table.fault("draw", f"a table is needed here, such as {COIL_EXAMPLE}", with_value=True)
+    found = _read_spiral(table, "draw", COIL, COIL_EXAMPLE)
+    return found[0] if found else None
+
+
+def _read_spiral(table: Table, key: str, known_keys: Keys, example: str) -> tuple[Coil, Table] | None:
+    """A hairspring given by numbers, and its table; None after a fault."""
+    if not isinstance(table.mapping[key], dict):
+        table.fault(key, f"a table is needed here, such as {example}", with_value=True)
         return None
-    keys = Table(table.mapping["draw"], f"{table.path}.draw", COIL, table.faults)
+    keys = Table(table.mapping[key], f"{table.path}.{key}", known_keys, table.faults)
     known = len(table.faults.found)
-    keys.lacks(COIL_EXAMPLE)
+    keys.lacks(example)
     inner, outer, turns = (keys.quantity(key, NAN) for key in ("inner", "outer", "turns"))
     width = keys.quantity("width")
     if outer <= inner:
         keys.fault("outer", "the stud must stand outside the collet: outer is no more than inner", with_value=True)
     stud = keys.quantity("stud")
-    return Coil(inner, outer, turns, stud, width) if len(table.faults.found) == known else None
+    return (Coil(inner, outer, turns, stud, width), keys) if len(table.faults.found) == known else None
+
+
+WOUND_EXAMPLE = 'coil = { inner = "0.5 mm", outer = "2.8 mm", turns = 13, stud = "90°", mass = "2.4 mg" }'
+
+
+def read_wound(table: Table, body: Body | None) -> tuple[Coil | None, float]:
+    """(a hairspring as it bends, its mass in kg); None without."""
+    if "coil" not in table:
+        return None, 0.0
+    if body is not None and (body.motion != "pivot" or body.geared is not None):
+        table.fault("coil", f"a hairspring is wound about a pivot without gears to another, unlike {body.name}")
+        return None, 0.0
+    found = _read_spiral(table, "coil", WOUND, WOUND_EXAMPLE)
+    if found is None:
+        return None, 0.0
+    try:
+        bending(found[0])
+    except ValueError as reason:
+        found[1].fault("turns", f"{reason}: give it more", with_value=True)
+        return None, 0.0
+    return found[0], found[1].quantity("mass")
 
 
 CURB_EXAMPLE = 'curb = { share = 0.03, gap = "20°" }'
@@ -260,7 +289,7 @@ def read_springs(mapping: Mapping[str, Any], bodies: tuple[Body, ...], faults: F
     entries = list(_entries(mapping, "springs", SPRING, bodies, faults))
     holders = [one.body.geared.to if one.body and one.body.geared else one.name for one in entries]
     for entry, holder in zip(entries, holders, strict=True):
-        for key in ("cubic", "curb"):
+        for key in ("cubic", "curb", "coil"):
             if key not in entry.table or entry.body is None:
                 continue
             if entry.other is not None or entry.body.on is not None:
@@ -370,7 +399,8 @@ def _spring(entry: Entry) -> Spring:
     rest = read_rest(entry.table, entry.body, stiffness, entry.other)
     stop = read_stop(entry.table, entry.body, entry.other, rest)
     cubic, curb = entry.table.quantity("cubic"), read_curb(entry.table, entry.body)
-    return Spring(entry.name, stiffness, rest, frequency, coil, entry.against, *stop, cubic, curb)
+    wound, mass = read_wound(entry.table, entry.body)
+    return Spring(entry.name, stiffness, rest, frequency, coil or wound, entry.against, *stop, cubic, curb, wound, mass)
 
 
 def _spring_stiffness(entry: Entry) -> float:

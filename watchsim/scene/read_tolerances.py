@@ -164,6 +164,10 @@ def read_tolerances(scene: Scene, faults: Faults) -> tuple[tuple[Tolerance, ...]
             table.fault("", f"{one.key} has a tolerance already: name each dimension once")
         elif one is not None:
             found[name] = one
+            others = [other for other in found.values() if one.group and other.group == one.group]
+            if any(other.count != one.count for other in others):
+                what = "needs as many values: write each = true for all of them (of wheels with as many teeth), or for none"
+                table.fault("group", f'what "{one.group}" draws together {what}')
     correlated = tuple(_correlations(scene, tables, found))
     keys = list(dict.fromkeys(key for one in correlated for key in one.between))
     if correlated and matrix(keys, correlated)[1] < LEAST_CORRELATED:

@@ -289,7 +289,9 @@ class Tolerance:
     @property
     def words(self) -> str:
         """ "±5 µm, normal, Cpk 1.33"."""
-        low, high = (f"{one / known_unit(self.unit).factor:+.4g}".replace("-", "−") for one in (self.low, self.high))
+        factor = known_unit(self.unit).factor
+        signs = "+" if self.low > 0.0 else "−", "−" if self.high < 0.0 else "+"  # "+4/−0"
+        low, high = (f"{sign}{abs(end) / factor:.4g}" for sign, end in zip(signs, (self.low, self.high), strict=True))
         unit = self.unit if self.unit in ("", "°") else f" {self.unit}"
         limits = f"±{high[1:]}{unit}" if self.low == -self.high else f"{high}/{low}{unit}"
         cpk = f", Cpk {(self.high - self.low) / (6.0 * self.sigma):.3g}" if self.sigma else ""

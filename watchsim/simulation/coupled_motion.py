@@ -19,6 +19,7 @@ from watchsim.dynamics.moving_frame import is_shaken
 from watchsim.dynamics.redundant import keep_independent, solve_small, unit_scale
 from watchsim.jit import hot_kernel, kernel
 from watchsim.model import FREE, OVER_TIME, REPEATED
+from watchsim.simulation.curb_pins import stay_on_side
 from watchsim.simulation.scratch import MONITORS
 from watchsim.tolerances import (
     DEPENDENT_IN_STEPS,
@@ -510,6 +511,7 @@ def motion(model, regime, options, t, smooth, out_counts):
     q, u = smooth.y[:n], smooth.y[n : 2 * n]
     closed, out = smooth.closed, smooth.dy
     forces(model, t, q, u, system.h)
+    stay_on_side(model, smooth.step.side, q, system.h)
     begin_loads(model, t, q, u, system)
     add_drag(system.dry, regime.grip, system.h)
     for b in range(len(model.bodies)):

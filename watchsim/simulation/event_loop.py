@@ -39,6 +39,7 @@ from watchsim.simulation.coupled_motion import (
     settle_loads,
     sort_by_island,
 )
+from watchsim.simulation.curb_pins import first_pin
 from watchsim.simulation.first_closing import closing_expected, first_touch
 from watchsim.simulation.impacts import approaching, collide
 from watchsim.simulation.integrator import NONE_FIRED, SOON, accept_coupled, coupled_step, first_leave, first_turn
@@ -70,7 +71,6 @@ from watchsim.simulation.step_path import (
     add_flight_sums,
     begin_flight,
     can_fly,
-    first_pin,
     flight_length,
     keep_flight_rows,
     keep_inner_rows,
@@ -90,7 +90,6 @@ from watchsim.tolerances import (
 
 TOUCHED, BEARING, KINDS = MONITORS, MONITORS + 1, MONITORS + 2  # what ends a step, besides the monitors of a contact
 FLIGHT_CELLS = 128
-PIN_STEPS = 4  # until a step ends on a curb pin to rounding: its extension bends where it has gone beyond
 ROWS_PER_STEP = math.ceil(FLIGHT_PHASE / FINEST_ROWS) + 8
 EVENTS_PER_CONTACT = 20
 
@@ -360,16 +359,12 @@ def _smooth_step(model, cells, state, options, end_time, scratch, record):
         made, smallest = coupled_step(model, state, options, longest, soonest, scratch.smooth)
         if not made:
             return Stop.BEARING_JAMS if scratch.smooth.held.jammed else Stop.STEP_TOO_SMALL, False
-        for _ in range(PIN_STEPS):  # with a stiffness of its own on either side of a curb pin
-            until = first_pin(model, scratch.step)
-            if until >= scratch.step.span.length:
-                break
-            made, smallest = coupled_step(model, state, options, until, math.inf, scratch.smooth)
-            if not made:
-                return Stop.STEP_TOO_SMALL, False
         leave, code = first_leave(model, state.regime, options, smallest, scratch.smooth, state.counts)
     step = scratch.step
     length = step.span.length
+    if not flying:
+        pin = first_pin(model, step)
+        length, leave = min(length, pin), leave if leave <= pin else math.inf
     known, touch, contact = first_touch(model, cells, state, options, min(length, leave), scratch)
     if not known:
         state.clock.step = proposed

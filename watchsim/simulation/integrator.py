@@ -26,6 +26,7 @@ from watchsim.simulation.coupled_motion import (
     project_positions,
     project_velocities,
 )
+from watchsim.simulation.curb_pins import begin_on_pins, energy_on_side
 from watchsim.simulation.options import longest_step
 from watchsim.simulation.scratch import COUPLED, MONITORS, SUMS
 from watchsim.simulation.state import NO_CONTACT
@@ -430,10 +431,8 @@ def _imbalance(model, options, h, greatest, smooth):
     step, n = smooth.step, len(model.coordinates)
     for i in range(len(step.y0)):
         smooth.y[i] = dense_value(step, i, PROBE * h)
-    before, after = (
-        stored_energy(model, step.y0[:n], step.y0[n : 2 * n]),
-        stored_energy(model, smooth.y[:n], smooth.y[n : 2 * n]),
-    )
+    before = stored_energy(model, step.y0[:n], step.y0[n : 2 * n])
+    after = stored_energy(model, smooth.y[:n], smooth.y[n : 2 * n]) + energy_on_side(model, step.side, smooth.y[:n])
     drive, damping, friction = smooth.y[2 * n], smooth.y[2 * n + 1], smooth.y[2 * n + 2]
     turned = before + after + abs(drive) + abs(damping) + abs(friction)
     allowed = options.ledger * max(greatest, kinetic_energy(model, smooth.y[n : 2 * n])) + LEDGER_ROUNDING * turned
@@ -454,6 +453,7 @@ def _begin_step(model, state, smooth):
         step.y0[i], step.y0[n + i] = state.q[i], state.u[i]
     for i in range(SUMS):
         step.y0[2 * n + i] = 0.0
+    begin_on_pins(model, state.a, step)
     engage(model, regime.active, state.instant, smooth)
 
 

@@ -227,7 +227,7 @@ def _free_velocity(model, state, h, work):
         work.inverse[i] = 1.0 / work.mass[i]
         pull = work.force[i] - coordinate.stiffness * (state.q[i] - coordinate.rest)
         if coordinate.bent:
-            pull += bent_force(coordinate, work.q[i])
+            pull += bent_force(model, i, work.q[i])
         work.free[i] = ((coordinate.mass - change) * work.u[i] + h * pull) * work.inverse[i]
         if coordinate.driven:
             work.inverse[i] = 0.0
@@ -302,7 +302,7 @@ def move(model, state, options, m, h, work, u):
         mean = 0.5 * (work.u[i] + u[i])
         state.q[i] += h * mean
         if coordinate.bent:  # taken at the middle: what it does beyond its energy is the method's error
-            state.sums.correction -= h * mean * bent_force(coordinate, work.q[i]) - bent_energy(coordinate, work.start[i])
+            state.sums.correction -= h * mean * bent_force(model, i, work.q[i]) - bent_energy(model, i, work.start[i])
         if not coordinate.driven:
             state.sums.drive += h * mean * work.force[i]
         state.sums.damping += h * work.damping[i] * mean * mean
@@ -326,7 +326,7 @@ def move(model, state, options, m, h, work, u):
         after = coordinate.stiffness * (state.q[i] - coordinate.rest) ** 2
         state.sums.correction -= 0.5 * (after - work.wound[i])
         if coordinate.bent:
-            state.sums.correction -= bent_energy(coordinate, state.q[i])
+            state.sums.correction -= bent_energy(model, i, state.q[i])
 
 
 @kernel

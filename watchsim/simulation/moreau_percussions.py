@@ -20,7 +20,7 @@ from watchsim.dynamics.delassus import (
     drive_through_contacts,
     inverse_mass,
 )
-from watchsim.dynamics.forces import line_spring_pull
+from watchsim.dynamics.forces import spring_pull
 from watchsim.dynamics.friction import friction_at, friction_bound, law_of, size_class
 from watchsim.dynamics.moving_frame import inertial_on
 from watchsim.dynamics.redundant import solve_small
@@ -311,7 +311,7 @@ def within_loads(model, m, step, P, before, after, work):
         bearing = model.bearings[k]
         j, pose = bearing.coordinate, work.pose[bearing.body]
         mx, my = point_of(pose, bearing.moment_x, bearing.moment_y)
-        fx, fy = line_spring_pull(model, bearing.body, work.q, work.foreseen)
+        fx, fy = spring_pull(model, bearing.body, work.q, work.foreseen)
         ix, iy = inertial_on(model, bearing.body, time, work.q, work.foreseen)
         jump, turned = after[j] - before[j], h * (0.5 * (before[j] + after[j])) ** 2
         x = -jump * my - turned * mx - h * (bearing.weight_x + fx + ix)

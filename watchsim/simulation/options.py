@@ -85,10 +85,12 @@ def options_for(size: float, tolerance: float, longest: float, natural: float = 
 
 
 def options_of(scene: Scene, compiled: Compiled, tolerance: float) -> Options:
-    """Options for a run of this scene. The ledger is watched where forces go with loads, slips or a case that moves."""
+    """Options for a run of this scene. Its ledger is watched but for constant friction and linear springs."""
     found = options_for(compiled.size, tolerance, scene.duration, natural_step(compiled), compiled.unit)
     slips = any(contact.slip != CONSTANT for contact in scene.contacts)
-    return found._replace(ledger=LEDGER_OF_PATH * tolerance) if scene.bearings or scene.shocks or slips else found
+    bent = any(spring.cubic or spring.curb is not None or spring.wound is not None for spring in scene.springs)
+    watched = scene.bearings or scene.shocks or slips or bent
+    return found._replace(ledger=LEDGER_OF_PATH * tolerance) if watched else found
 
 
 def natural_step(compiled: Compiled) -> float:

@@ -9,7 +9,6 @@ Parts about which nothing is open any more are put behind each other, and may go
 
 from __future__ import annotations
 
-import copy
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,10 +19,8 @@ from numpy.typing import NDArray
 
 from watchsim.mechanism.compile import Compiled
 from watchsim.model import KIND_WORD
-from watchsim.scene.roles import nominal_frequency, roles
-from watchsim.scene.scene import ALL, STATISTICS, WHOLE_RUN, Recording, Scene, Window
-from watchsim.simulation.saved_state import TALLIED, TALLIED_LATER
-from watchsim.simulation.state import EVENT_DTYPE, EventKind
+from watchsim.scene.scene import ALL, STATISTICS, WHOLE_RUN, Recording, Window
+from watchsim.simulation.state import EVENT_DTYPE
 from watchsim.storage.columns import Columns
 
 # What are the contacts of a run called, for people?
@@ -142,6 +139,8 @@ Array = NDArray[np.float64]
 Events = NDArray[Any]
 
 FEWEST_TURNS = 3
+LONGEST_STEP = 0.26  # periods: within a window rows are never further apart than a quarter of a swing
+STILL = 1e-13  # rad or m: half swings no larger are rounding, of a body at rest
 QUIET = 0.1  # of half a period: so long the oscillator must have touched nothing before its first noise
 
 
@@ -187,109 +186,6 @@ def unevenness(marks: Array) -> Array:
     return np.diff(np.diff(marks, prepend=np.nan), prepend=np.nan)
 
 
-# What can be said of a run without keeping it?
-#
-# Sums over all half swings of its first sprung body and counts of its events, made as the run goes. Events are handed over
-# part by part; what a half swing still needs is carried on. However a run is cut, the same half swings are counted.
-
-# Of each half swing: amplitude (rad or m), time since the passage two before (s), unevenness of the ticks and of the passages
-# (s, with the sign of the direction of swing, so that chance does not add up to a beat error).
-QUANTITIES = ("amplitude", "period", "uneven_ticks", "uneven_passages")
-MOMENTS = ("number", "mean", "squares", "least", "largest")  # squares: of the distances from the mean, summed
-CARRIED = 8  # passages whose events are carried on; a half swing needs four: its beat is compared with those of the two before
-LATE = 120  # half swings whose amplitudes are kept: they show whether a watch has settled
-MOST_CARRIED = 20000  # events, of an oscillator that makes noises but never passes its rest position
-
-
-class Tally:
-    """Sums so far. `arrays()` is all it holds."""
-
-    def __init__(self, scene: Scene, pairs: Sequence[Pair]) -> None:
-        self.body, self.half_period = -1, 0.0
-        name = roles(scene).oscillator
-        if name is not None:
-            self.body = [body.name for body in scene.bodies].index(name)
-            self.half_period = 0.5 / (nominal_frequency(scene) or np.inf)
-            self._noisy = np.append(as_pairs(pairs).of_body(name), False)
-        self.kinds = np.zeros(max(EventKind) + 1, np.int64)
-        self.beats = np.zeros(2, np.int64)  # half swings, and those with a tick
-        self.moments = np.zeros((len(QUANTITIES), len(MOMENTS)))
-        self.moments[:, 3:] = np.inf, -np.inf
-        self.late = np.zeros(0)  # amplitudes of the last half swings
-        self.last = np.full(1, -np.inf)  # passage of the last half swing that was counted, s
-        self.carried: Events = np.zeros(0, EVENT_DTYPE)
-
-    def arrays(self) -> dict[str, NDArray[Any]]:
-        """Everything, to be saved."""
-        return {name: np.array(getattr(self, name)) for name in (*TALLIED, *TALLIED_LATER)}
-
-    def restore(self, arrays: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from saved sums."""
-        for name, array in arrays.items():
-            setattr(self, name, np.array(array))
-
-    def fold(self, events: Events, last: bool = False) -> None:
-        """Count the next events; `last` says that no more will come."""
-        self.kinds += np.bincount(events["kind"], minlength=len(self.kinds))
-        if self.body < 0:
-            return
-        noise = (events["kind"] == EventKind.IMPACT) & self._noisy[np.where(events["contact"] >= 0, events["contact"], -1)]
-        own = np.concatenate([self.carried, events[noise | (events["body"] == self.body)]])
-        crossings, turns = own[own["kind"] == EventKind.CROSS], own[own["kind"] == EventKind.TURN]
-        self._count(crossings, turns, own["t"][own["kind"] == EventKind.IMPACT], last)
-        if len(crossings) > CARRIED:
-            own = own[own["t"] >= crossings["t"][-CARRIED]]
-        self.carried = own[-MOST_CARRIED:].copy()
-
-    def _count(self, crossings: Events, turns: Events, noises: Array, last: bool) -> None:
-        """Sums over the half swings that are over, and were not counted before."""
-        complete, before, after = half_swings(crossings, turns)
-        if not len(complete):
-            return
-        t, start, end = crossings["t"][complete], turns["t"][before], turns["t"][after]
-        ticks = first_noises(noises, start, end, self.half_period)
-        way = turns["value"][after] - turns["value"][before]
-        # Until the next passage a turning point further out may still come.
-        new = (t > self.last[0]) & (last | (complete < len(crossings) - 1))
-        values = (
-            0.5 * np.abs(way),
-            since_two_before(crossings["t"])[complete],
-            np.sign(way) * unevenness(ticks),
-            np.sign(way) * unevenness(t),
-        )
-        for moments, value in zip(self.moments, values, strict=True):
-            _add(moments, value[new & np.isfinite(value)])
-        self.late = np.append(self.late, values[0][new])[-LATE:]
-        self.beats += (int(new.sum()), int(np.isfinite(ticks[new]).sum()))
-        self.last[0] = np.max(t[new], initial=self.last[0])
-
-    def finished(self) -> dict[str, Any]:
-        """The sums as plain numbers, of a run that ends here; more may follow in this tally all the same."""
-        whole = copy.copy(self)
-        whole.restore(self.arrays())
-        whole.fold(np.zeros(0, EVENT_DTYPE), last=True)
-        kinds = {kind.name.lower(): int(whole.kinds[kind]) for kind in EventKind}
-        sums: dict[str, Any] = {"events_by_kind": kinds}
-        if self.body >= 0:
-            sums |= {"half_swings": int(whole.beats[0]), "ticks": int(whole.beats[1]), "late": whole.late.tolist()}
-            for name, moments in zip(QUANTITIES, whole.moments.tolist(), strict=True):
-                sums[name] = dict(zip(MOMENTS, moments, strict=True)) if moments[0] else None
-        return sums
-
-
-def _add(moments: Array, values: Array) -> None:
-    """Take values into number, mean, sum of squares, least and largest, one after the other (Welford 1962): to the last bit
-    the same however the values are handed over."""
-    number, mean, squares, least, largest = moments.tolist()
-    for value in values.tolist():
-        number += 1.0
-        apart = value - mean
-        mean += apart / number
-        squares += apart * (value - mean)
-        least, largest = min(least, value), max(largest, value)
-    moments[:] = number, mean, squares, least, largest
-
-
 Bits = NDArray[np.bool_]
 
 
@@ -310,11 +206,11 @@ class RowsToMake:
 Rows: TypeAlias = Union[Array, RowsToMake]  # noqa: UP007 - an alias is evaluated, in Python 3.10, too
 
 
-def _times(rows: Rows) -> Array:
+def row_times(rows: Rows) -> Array:
     return rows.times if isinstance(rows, RowsToMake) else rows[:, 0]
 
 
-def _made(rows: Rows) -> Array:
+def made_rows(rows: Rows) -> Array:
     return rows.make(rows.numbers) if isinstance(rows, RowsToMake) else rows
 
 
@@ -371,7 +267,7 @@ class Recorder:
         return {
             "met": np.array(self._met),
             "last": np.array([time, float(inside)]),
-            "row": _made(rows[-1:])[0].copy() if waits else np.zeros(0),
+            "row": made_rows(rows[-1:])[0].copy() if waits else np.zeros(0),
         }
 
     def go_on(self, unfinished: Mapping[str, NDArray[Any]]) -> None:
@@ -390,7 +286,7 @@ class Recorder:
 
     def flush(self, rows: Rows, events: Events) -> None:
         """Keep copies of what is wanted of the next rows and events, and forget earlier ones that were only of the tail."""
-        row_stays, event_stays = self._stays(_times(rows)), np.ones(len(events), bool)
+        row_stays, event_stays = self._stays(row_times(rows)), np.ones(len(events), bool)
         if self.recording.keep == STATISTICS:
             event_stays = within(events["t"], self.recording.windows)
         if self.recording.keep == ALL:
@@ -430,7 +326,7 @@ class Recorder:
             return len(self._ends) < self._last[0]
         before = self._last[1] - self.tail
         for rows, _ in self._rows[:2]:
-            if not len(rows) or _times(rows)[-1] >= before:
+            if not len(rows) or row_times(rows)[-1] >= before:
                 return False
         return bool(np.max(self._events[0][0]["t"], initial=-np.inf) < before)
 
@@ -438,7 +334,7 @@ class Recorder:
         """Leave only what stays for good of the earliest open part."""
         rows, row_stays = self._rows.pop(0)
         events, event_stays = self._events.pop(0)
-        formed = self._form(_made(rows if row_stays.all() else rows[row_stays]))
+        formed = self._form(made_rows(rows if row_stays.all() else rows[row_stays]))
         settled = self._event_form(events[event_stays])
         if row_stays.any():
             self._done.append(formed)
@@ -472,14 +368,14 @@ class Recorder:
             return None
         ends = np.cumsum([len(rows) for rows, _ in self._rows])[:-1]
         parts = zip(self._rows, np.split(self._chosen(end), ends), strict=True)
-        rows = [self._form(_made(rows[bits])) for (rows, _), bits in parts]
+        rows = [self._form(made_rows(rows[bits])) for (rows, _), bits in parts]
         events = [part[bits] for (part, _), bits in zip(self._events, self._chosen_events(end), strict=True)]
         return self._done.all(rows), self._done_events.all([[self._event_form(np.concatenate(events))]])[0]
 
     def _chosen(self, end: float) -> Bits:
         """Which rows of the open parts are kept of a run that ends now."""
         since = self._since(end)
-        times = np.concatenate([np.zeros(0), *(_times(rows) for rows, _ in self._rows)])
+        times = np.concatenate([np.zeros(0), *(row_times(rows) for rows, _ in self._rows)])
         stays = _joined_bits([bits for _, bits in self._rows])
         first = int(np.searchsorted(times, since))
         stays[first:] = True

@@ -26,14 +26,14 @@ from watchsim.dynamics.forces import stored_energy
 from watchsim.mechanism.compile import Compiled
 from watchsim.model import words_of
 from watchsim.scene.roles import frequency
-from watchsim.scene.scene import Recording, Scene, Window
+from watchsim.scene.scene import WHOLE_RUN, Recording, Scene, Window
 from watchsim.simulation import EVENT_DRIVEN
 from watchsim.simulation.event_loop import EVENTS_PER_CONTACT, ROWS_PER_STEP, advance
 from watchsim.simulation.foregone import Foregone
 from watchsim.simulation.options import Options, options_of
 from watchsim.simulation.overlap_watch import OverlapWatch
 from watchsim.simulation.overlap_watch import warm_up as warm_up_watch
-from watchsim.simulation.recording import Recorder, Tally, columns_of, pairs_of, tail_length
+from watchsim.simulation.recording import Recorder, columns_of, pairs_of, tail_length
 from watchsim.simulation.run_end import (
     Crowd,
     driven_into,
@@ -52,6 +52,7 @@ from watchsim.simulation.scratch import Until, new_record, new_scratch, new_unti
 from watchsim.simulation.start import clear_start
 from watchsim.simulation.start import warm_up as warm_up_start
 from watchsim.simulation.state import COUNT_NAMES, EVENT_DTYPE, State, Stop, arrays_of, new_state, room_for
+from watchsim.simulation.tally import Tally
 from watchsim.simulation.trajectory import Trajectory, events_of_scene, rows_of_scene
 from watchsim.tolerances import FIRST_STEP
 
@@ -229,13 +230,10 @@ class Run:
         self.finder = CellFinder(compiled.seen or model)
         self.scratch = new_scratch(model)
         self.pairs = pairs_of(compiled)
-        self.kept = Recorder(
-            recording,
-            tail_length(frequency(scene)),
-            functools.partial(rows_of_scene, compiled),
-            functools.partial(events_of_scene, compiled),
-        )
-        self.tally = Tally(scene, self.pairs)
+        forms = functools.partial(rows_of_scene, compiled), functools.partial(events_of_scene, compiled)
+        self.kept = Recorder(recording, tail_length(frequency(scene)), *forms)
+        self.tally = Tally(scene, self.pairs, compiled.slices, *forms)
+        self.tally.waits = self.kept.windows == WHOLE_RUN
         windows = widened(self.kept.windows, self.options)
         self.record = new_record(model, ROWS + ROWS_PER_STEP, EVENTS + EVENTS_PER_CONTACT * room_for(model), windows)
         self.watch = OverlapWatch(scene, compiled, self.method, self.kept.windows)
@@ -294,7 +292,7 @@ class Run:
         rows, events = self.record.used.rows, self.record.used.events
         if rows == 0 and events == 0:
             return
-        self.tally.fold(self.record.events[:events])
+        self.tally.fold(self.record.events[:events], self.record.rows[:rows])
         self.watch.see_rows(self.record.rows[:rows])
         self.kept.flush(self.record.rows[:rows], self.record.events[:events])
         self.record.used.rows, self.record.used.events = 0, 0

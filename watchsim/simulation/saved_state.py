@@ -18,7 +18,11 @@ from numpy.typing import NDArray
 from watchsim.mechanism.compile import Compiled
 
 TALLIED = ("kinds", "beats", "moments", "last", "carried")
-TALLIED_LATER = ("late",)  # not in states of earlier versions: they begin blank
+# Not in states of earlier versions: they begin blank.
+TALLIED_LATER = (
+    *("late", "places", "pending", "row", "holding", "swung", "wheel.numbers", "wheel.off", "wheel.steps"),
+    *("knocks.contacts", "knocks.together"),
+)
 LATER = ("returning", "returned", "row_a", "row_jerk", "since_row")  # the same of the state itself
 EARLIER_NUMBERS = 6  # integers of `Instant`; the next one decides all islands where it is zero
 # Of systems side by side: rows and events that wait to be merged, and how many of each system.
@@ -30,7 +34,7 @@ REQUESTED = ("method", "step", "tolerance")
 class SavedState:
     """A state to go on from. `rows` and `events` say how many of its run's kept rows and events lie before it.
 
-    `tally` holds sums over all events before it (see `Tally` in recording.py); `recorded` what decides about the next rows
+    `tally` holds sums over all events before it (see `Tally` in tally.py); `recorded` what decides about the next rows
     (see `Recorder.unfinished`).
     """
 

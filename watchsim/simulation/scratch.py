@@ -138,6 +138,7 @@ class Step(NamedTuple):
     u: Array
     awake: Modes  # by coordinate, and its grip: those of the state, for the whole step
     grip: Modes
+    side: Modes  # of their curb pins, see curb_pins.py
     bound: Array  # bound of each |q''| over the step
     y0: Array  # q, u, sums
     y1: Array
@@ -383,7 +384,9 @@ def cell_request(coordinates: int) -> CellRequest:
 def _step_room(n: int) -> Step:
     width = 2 * n + SUMS
     parts: dict[str, Any] = {name: np.zeros(n) for name in ("q", "u", "bound")}
-    parts |= {name: np.zeros(n, np.int8) for name in ("awake", "grip")} | {name: np.zeros(width) for name in ("y0", "y1")}
+    parts |= {name: np.zeros(n, np.int8) for name in ("awake", "grip", "side")} | {
+        name: np.zeros(width) for name in ("y0", "y1")
+    }
     return Step(span=blank(Span), stages=np.zeros((16, width)), dense=np.zeros((7, width)), **parts)
 
 

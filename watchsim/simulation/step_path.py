@@ -444,49 +444,6 @@ def keep_passages(model, state, options, step, end, record):
         state.clock.time = now
 
 
-# When does a hairspring come to bear on a curb pin, or leave it?
-
-PIN_SAMPLES = 8
-ON_PIN = 1e-12  # rad: a step that begins so near to a pin begins on it
-
-
-@kernel
-def first_pin(model, step):
-    """The time of a coupled step at which the first hairspring passes a curb pin; infinity if none does."""
-    first = math.inf
-    for i in range(len(model.coordinates)):
-        coordinate = model.coordinates[i]
-        if coordinate.pinned == 0.0:
-            continue
-        for side in range(2):
-            edge = coordinate.rest + (coordinate.pin_low if side == 0 else coordinate.pin_high)
-            first = min(first, _passes(step, i, edge))
-    return first
-
-
-@kernel
-def _passes(step, i, edge):
-    """The first time at which coordinate i passes `edge`; where the step begins on it its velocity says the side."""
-    low, f_low = 0.0, step.y0[i] - edge
-    if abs(f_low) <= ON_PIN:
-        f_low = math.copysign(ON_PIN, step.u[i])
-    for sample in range(1, PIN_SAMPLES + 1):
-        high = step.span.length * sample / PIN_SAMPLES
-        f_high = dense_value(step, i, high) - edge
-        if f_high * f_low < 0.0:
-            bracket = opened(low, f_low, high, f_high)
-            tau = next_time(bracket)
-            while is_open(bracket, tau, PASSAGE_RESOLUTION * bracket.high):
-                f = dense_value(step, i, tau) - edge
-                bracket = narrowed(bracket, tau, f, f * bracket.f_high > 0.0)
-                if f == 0.0:
-                    break
-                tau = next_time(bracket)
-            return bracket.high
-        low, f_low = high, f_high
-    return math.inf
-
-
 # Which rows does a coupled step need, so that the motion within it can be interpolated from them?
 #
 # Between rows the motion is taken for polynomials through q, u and a at both ends (see `Trajectory.sample`). Where these stray

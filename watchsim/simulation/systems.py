@@ -422,7 +422,7 @@ class SystemsRun(Run):
         for one in self.systems:
             one.forget(until)
         self._merged = max(until, self._merged)
-        self.tally.fold(events)
+        self.tally.fold(events, rows)
         self.kept.flush(rows, events)
 
     def _look(self) -> None:

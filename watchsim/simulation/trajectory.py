@@ -146,7 +146,7 @@ class Trajectory:
     counts             events, impacts, steps, lcp_failures and the like
     keep, spans        what was kept (scene/recording.py): `spans` the stretches of time (s) with rows, () for a run that was
                        made by hand
-    sums               over all events of the whole run, kept or not (simulation/record/tally.py)
+    sums               over all events of the whole run, kept or not (simulation/tally.py)
     end_state          from which the run can go on; None for one that was made by hand
     failure            the complementarity problem on which the solver gave up (simulation/lcp_failure.py), else None
     """

@@ -8,6 +8,7 @@ coefficients give first-order and total indices (Sudret 2008). What it does not 
 
 from __future__ import annotations
 
+import functools
 import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -47,12 +48,17 @@ def polynomials(quantile: Callable[[Floats], Floats], degree: int) -> Floats:
 
     Of powers of (x - mean) / spread; row k is the polynomial of degree k.
     """
-    at, weights = np.polynomial.legendre.leggauss(NODES)
+    at, weights = _nodes()
     x = _standard(quantile(0.5 * (at + 1.0)), quantile)
     root = np.sqrt(0.5 * weights)
     r = np.linalg.qr(root[:, None] * np.vander(x, degree + 1, increasing=True), mode="r")
     made: Floats = (np.linalg.inv(r) * np.sign(np.diag(r))).T
     return made
+
+
+@functools.lru_cache(maxsize=1)
+def _nodes() -> tuple[Floats, Floats]:
+    return np.polynomial.legendre.leggauss(NODES)
 
 
 def _standard(values: Floats, quantile: Callable[[Floats], Floats]) -> Floats:

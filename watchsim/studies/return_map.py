@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from watchsim.analysis.verdict import OUTSIDE
 from watchsim.analysis.verdict_kinds import BACKWARDS, KNOCKS, STOPS, TRIPS, UNSETTLED
+from watchsim.simulation.knock_tally import OUTSIDE
 from watchsim.simulation.state import EventKind, State
 from watchsim.simulation.trajectory import Array
 from watchsim.studies.cycle import Measures, measures
@@ -21,6 +21,7 @@ from watchsim.studies.section import Events, Loop, Parts, Section, SolverGaveUp,
 EARLY, LATE = 0.03, 0.06  # of a period: how long before its end an oscillation is looked at, and for how long after
 LONGER = 1.5  # times the time of the last oscillation: how long the next one may take
 NEAR = 0.05  # of a pitch: by how much the wheel may miss a whole number of teeth
+RECENT = 32  # returns that are remembered
 
 
 class Return(NamedTuple):
@@ -45,10 +46,19 @@ class ReturnMap:
     def __init__(self, loop: Loop, parts: Parts, section: Section) -> None:
         self.loop, self.parts, self.section = loop, parts, section
         self.period = parts.period
-        self.returns = 0  # oscillations computed so far
+        self._recent: dict[float, Return] = {}  # single ones by their amplitude: that of a fixed point is looked at again
 
     def __call__(self, amplitude: float, oscillations: int = 1) -> Return:
-        """So many oscillations that begin at that amplitude."""
+        """So many oscillations that begin at that amplitude; whoever gets one that is known leaves its state as it is."""
+        if oscillations > 1:
+            return self._computed(amplitude, oscillations)
+        if amplitude not in self._recent:
+            if len(self._recent) >= RECENT:
+                self._recent.clear()
+            self._recent[amplitude] = self._computed(amplitude, 1)
+        return self._recent[amplitude]
+
+    def _computed(self, amplitude: float, oscillations: int) -> Return:
         begin = self.section.at(self.loop, self.parts, amplitude)
         if begin is None:
             return Return(np.nan, 0.0, UNSETTLED, None, np.zeros(0))
@@ -74,7 +84,6 @@ class ReturnMap:
 
     def _followed(self, state: State, oscillations: int) -> Return:
         end = oscillations * self.period
-        self.returns += oscillations
         events = self.loop.on(state, end - EARLY * self.period, exactly=True)
         seen = len(turns(events, self.parts))
         advance = self._advance(state)

@@ -48,7 +48,7 @@ def deviation(tolerance: Tolerance, u: Floats) -> Floats:
 
 @dataclass(frozen=True)
 class Draw:
-    """One independent number: for one tolerance, one tooth of it (`tooth`), or all tolerances of a group."""
+    """One independent number: for one tolerance or all of a group, or for one tooth of it (`tooth`)."""
 
     name: str
     members: tuple[int, ...]  # of the space's tolerances
@@ -67,7 +67,7 @@ class Space:
         found: dict[str, Draw] = {}
         for i, one in enumerate(self.tolerances):
             for tooth in range(one.count):
-                name = one.group or (f"{one.key}.{tooth}" if one.count > 1 else one.key)
+                name = (one.group or one.key) + (f".{tooth}" if one.count > 1 else "")
                 earlier = found[name].members if name in found else ()
                 found[name] = Draw(one.group or one.key, (*earlier, i), tooth)
         return tuple(found.values())
@@ -83,8 +83,9 @@ class Space:
         if not self.correlated:
             return None
         whole, _ = matrix([one.key for one in self.tolerances], self.correlated)
-        places = [draw.members[0] for draw in self.draws]
-        made: Floats = np.linalg.cholesky(whole[np.ix_(places, places)])
+        places = np.array([draw.members[0] for draw in self.draws])
+        teeth = (places[:, None] == places) & ~np.eye(len(places), dtype=bool)  # of one tolerance, each on its own
+        made: Floats = np.linalg.cholesky(np.where(teeth, 0.0, whole[np.ix_(places, places)]))
         return made
 
     def uniform(self, numbers: Sequence[int], seed: int, extra: int = 0) -> Floats:

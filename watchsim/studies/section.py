@@ -124,8 +124,21 @@ def why_no_section(compiled: Compiled, parts: Parts) -> str:
 DEEPEST = (1e-6, 1e-5)  # m: how deep an overlap may be; tried in turn, since far behind a face other faces are near
 
 
+_last: tuple[Compiled, Options, NDArray[np.float64] | None] | None = None
+
+
 def freed_start(compiled: Compiled, options: Options) -> NDArray[np.float64] | None:
-    """Coordinates near the scene's start at which nothing overlaps; None where bodies overlap by more than a little."""
+    """Coordinates near the scene's start at which nothing overlaps; None where bodies overlap by more than a little.
+
+    What was asked last is remembered: a sample's geometry is measured where its motion begins.
+    """
+    global _last  # noqa: PLW0603
+    if _last is None or _last[0] is not compiled or _last[1] != options:
+        _last = compiled, options, _freed(compiled, options)
+    return _last[2]
+
+
+def _freed(compiled: Compiled, options: Options) -> NDArray[np.float64] | None:
     ids = np.unique(compiled.model.near)
     model = compiled.model._replace(contacts=frozen(compiled.model.contacts[ids]))
     found = None

@@ -218,7 +218,7 @@ def read_study(folder: str | Path) -> tuple[Plan, dict[int, Row], dict[str, Any]
     scene = load(place / SCENE)
     scene = changed(scene, header["changes"]) if header["changes"] else scene
     options = {name: header[name] for name in ("seed", "importance", "duration", "tolerance")}
-    plan = plan_of(scene, **options)
+    plan = plan_of(scene, **options, is_computed=True)
     if plan.importance:
         margins = Linear(plan, rows).margins()
         plan = dataclasses.replace(plan, shifted=towards_failures(plan.space, margins) if margins else None)
@@ -266,8 +266,7 @@ def merge(folders: Sequence[str | Path], folder: str | Path | None = None) -> To
         Path(folder).mkdir(parents=True, exist_ok=True)
         with Journal(Path(folder), header, False) as journal:
             keep_scene(plan.scene, Path(folder))
-            for number in sorted(rows):
-                journal.add(number, rows[number])
+            journal.add_all({number: rows[number] for number in sorted(rows)})
     return analysed(plan, rows, _is_whole(rows), 0.0)
 
 

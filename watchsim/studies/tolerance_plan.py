@@ -16,7 +16,7 @@ from watchsim.scene.errors import Fault, SceneError
 from watchsim.scene.load import changed
 from watchsim.scene.read_settings import FUNCTION
 from watchsim.scene.scene import Expectation, Scene
-from watchsim.studies.point import OUTPUTS, Question, Row
+from watchsim.studies.point import OUTPUTS, Question
 from watchsim.studies.sampling import Floats, Shifted, Space
 from watchsim.studies.sensitivity import fixed_nominal
 from watchsim.studies.steady import steady
@@ -80,7 +80,6 @@ class Plan:
     not_judged: tuple[str, ...]
     seed: int
     importance: bool
-    nominal: Row
     shifted: Shifted | None = None
 
     def shares(self, numbers: Sequence[int]) -> tuple[Floats, Floats]:
@@ -123,10 +122,12 @@ def plan_of(
     seed: int = 0,
     importance: bool = False,
     resumed: Path | None = None,
+    is_computed: bool = False,
 ) -> Plan:
     """The study of a scene; SceneError where it has no tolerances, or is none without them.
 
-    `resumed`: the folder of a study that shall be gone on with; ValueError where that is another one.
+    resumed      the folder of a study that shall be gone on with; ValueError where that is another one
+    is_computed  its samples are there, and none is computed: then no limit cycle is looked for to begin with
     """
     if not scene.tolerances:
         message = 'this scene has no tolerances. Write e.g. "contacts.0.friction" = { limits = "±0.03" } below [tolerances]'
@@ -138,18 +139,19 @@ def plan_of(
     limits, left = limits_of(scene)
     function = 1 if all(one.count == 1 for one in scene.tolerances) else 0
     question = Question(bare, duration is None, duration, tolerance, function=function)
+    plan = Plan(scene, space, question, limits, left, seed, importance)
+    if is_computed:
+        return plan
     changed(bare, space.changes(np.full(len(space.draws), 0.5)))  # refuses now what no sample could be
-    nominal: Row = {"verdict": None, "message": ""}
     if resumed is not None:  # refused before anything takes time
-        same_study(resumed, Plan(scene, space, question, limits, left, seed, importance, nominal).header())
+        same_study(resumed, plan.header())
     if duration is None:
         cycle = steady(bare, tolerance=tolerance)
         other = steady(changed(bare, space.changes(np.full(len(space.draws), 0.6))), tolerance=tolerance)
         amplitude = np.radians(cycle.amplitude_deg) if cycle.found and cycle.amplitude_deg else None
         brief = cycle.found and cycle.oscillations == 1 and other.found and other.oscillations == 1
         question = dataclasses.replace(question, amplitude=float(amplitude) if amplitude else None, brief=brief)
-        nominal = {"verdict": cycle.verdict, "message": cycle.message}
-    return Plan(scene, space, question, limits, left, seed, importance, nominal)
+    return dataclasses.replace(plan, question=question)
 
 
 def without_tolerances(scene: Scene) -> Scene:

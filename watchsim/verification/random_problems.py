@@ -18,6 +18,7 @@ from watchsim.model import (
     BEARING,
     BODY,
     BODY_PAIR,
+    COIL,
     CONTACT,
     COORDINATE,
     JOINT,
@@ -76,13 +77,19 @@ class BareContacts:
             "bearings": BEARING,
             "shocks": SHOCK,
             "weighed": WEIGHED,
+            "coils": COIL,
             "tables": TABLE,
             "primitives": PRIMITIVE,
             "pairs": BODY_PAIR,
         }
         parts = {name: records(dtype, 0) for name, dtype in none.items()}
         parts |= {"coordinates": coordinates, "contacts": contacts, "laws": laws}
-        parts |= {"knots": np.zeros((0, 2)), "jolts": np.zeros((0, 6)), "near": np.zeros(0, np.int64)}
+        parts |= {
+            "knots": np.zeros((0, 2)),
+            "jolts": np.zeros((0, 6)),
+            "windings": np.zeros((0, 4)),
+            "near": np.zeros(0, np.int64),
+        }
         return Model(**{name: frozen(part) for name, part in parts.items()})
 
     def take(self, contacts: list[int]) -> None:

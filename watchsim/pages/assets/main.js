@@ -171,17 +171,22 @@ const resize = () => {
   plots.stale(); dirty = true;
 };
 
-let last = 0, trackKey = "";
+let last = 0, trackKey = "", changed = 0, coarse = false; // ms of the last frame in which something was new; was it drawn as one of many?
+const STILL = 250; // ms without news after which the solids are drawn as finely as they can be
 const frame = (now) => {
   const seconds = Math.min((now - last) / 1000, 0.1);
   if (last && now > last) fps = 0.95 * fps + 0.05 * (1000 / (now - last));
   last = now;
   if (!player) { requestAnimationFrame(frame); return; }
+  const moving = player.playing || (dirty && now - changed < STILL);
   if (player.tick(seconds)) { plots.hold(player.t); dirty = true; }
+  if (coarse && !moving && now - changed > STILL) dirty = true;
   if (dirty || plots.dirty) {
     dirty = plots.dirty = false;
     const begun = performance.now();
-    player.draw(ctx, look);
+    if (solids.on && moving && coarse) solids.pace.frame(now - changed, drawn);
+    changed = now; coarse = solids.on && moving;
+    player.draw(ctx, look, moving);
     words();
     plots.draw(player.t, look);
     strip.draw(player.t, look, plots.range);
@@ -331,6 +336,7 @@ window.watchsim = {
   parts: () => scenery.parts.map(({ body, layer, pale }) => ({ body, layer, pale: Boolean(pale) })),
   ghost: () => scenery.ghost.length,
   pace: () => ({ fps, drawn }),
+  fineness: () => solids.pace,
 };
 new ResizeObserver(resize).observe($("picture"));
 window.addEventListener("resize", resize);

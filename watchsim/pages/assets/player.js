@@ -70,12 +70,12 @@ class Player {
 
   fade(b) { if (this.faded.has(b)) this.faded.delete(b); else this.faded.add(b); this.changed(); }
 
-  // Draw everything for the instant t on a canvas of the view's size.
-  draw(ctx, look) {
+  // Draw everything for the instant t on a canvas of the view's size; in space `moving` may be coarser.
+  draw(ctx, look, moving = false) {
     const poses = this.motion.poses(this.t);
     this.view.aim(poses);
     const own = { ...look, faded: this.faded, chosen: this.chosen };
-    if (this.solids.on) { this.solids.draw(this.view, poses, own); return; }
+    if (this.solids.on) { this.solids.draw(this.view, poses, own, moving); return; }
     this.view.plain(ctx);
     ctx.fillStyle = look.paper;
     ctx.fillRect(0, 0, this.view.width, this.view.height);

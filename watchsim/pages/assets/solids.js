@@ -3,17 +3,18 @@
 const VERTEX = `#version 300 es
 in vec3 point; in vec3 normal;
 uniform vec4 pose; uniform vec3 sight; uniform mat3 camera; uniform vec2 half_size; uniform float scale; uniform float depth;
-out vec3 facing; out vec2 beside;
+out vec3 facing; out vec3 watcher;
 vec3 turned(vec3 v) { return vec3(pose.z * v.x - pose.w * v.y, pose.w * v.x + pose.z * v.y, v.z); }
 void main() {
   vec3 seen = camera * (turned(scale * point) + vec3(pose.xy, 0.0) - vec3(sight.xy, 0.0)) * sight.z;
   facing = turned(normal);
-  beside = seen.xy / max(half_size.x, half_size.y);
+  vec3 straight = vec3(0.0, 0.0, 1.0) * camera; // the way back to the eye; its level part is 0 from above, where light comes straight back
+  watcher = straight - 0.35 * length(straight.xy) * (vec3(seen.xy / max(half_size.x, half_size.y), 0.0) * camera); // from an eye at some distance
   gl_Position = vec4(seen.xy / half_size, -seen.z / depth, 1.0);
 }`;
 const FRAGMENT = `#version 300 es
 precision highp float;
-in vec3 facing; in vec2 beside; uniform mat3 camera; uniform vec3 light; uniform float metal; uniform float alpha; uniform vec3 mark; uniform vec2 number;
+in vec3 facing; in vec3 watcher; uniform vec3 light; uniform float metal; uniform float alpha; uniform vec3 mark; uniform vec2 number;
 out vec4 colour;
 // A studio: bright above, dim below, two windows and the dark edge of the table.
 float studio(vec3 way) {
@@ -21,26 +22,50 @@ float studio(vec3 way) {
   return sky + 0.55 * smoothstep(0.82, 0.98, dot(way, normalize(vec3(-0.62, 0.55, 0.38)))) + 0.4 * smoothstep(0.88, 0.99, dot(way, normalize(vec3(0.8, -0.35, 0.1))));
 }
 void main() {
-  vec3 n = normalize(facing), straight = transpose(camera) * vec3(0.0, 0.0, 1.0);
-  float level = length(straight.xy); // 0 from above, where light comes straight back; else as from an eye at some distance
-  vec3 eye = normalize(straight - 0.35 * level * (transpose(camera) * vec3(beside, 0.0)));
+  if (number.x + number.y > 0.0) { colour = vec4(number, 0.0, 1.0); return; }
+  vec3 n = normalize(facing), eye = normalize(watcher);
   if (dot(n, eye) < 0.0) n = -n;
-  float grazing = 0.8 * pow(1.0 - dot(n, eye), 5.0), mirrored = studio(reflect(-eye, n));
+  float past = 1.0 - dot(n, eye), twice = past * past, grazing = 0.8 * twice * twice * past, mirrored = studio(reflect(-eye, n));
   vec3 metallic = mix(light, vec3(1.0), grazing) * mirrored;
   float soft = mix(0.5, 1.0, smoothstep(-0.3, 0.75, n.z + 0.25 * dot(n.xy, vec2(-0.6, 0.8))));
   vec3 clear = light * soft + 0.5 * max(mirrored - 1.0, 0.0) + 0.4 * grazing;
   vec3 sent = mix(mix(clear, metallic, metal), mark, mark.x < 0.0 ? 0.0 : 0.5);
-  vec3 low = 12.92 * sent, high = 1.055 * pow(max(sent, 1e-5), vec3(1.0 / 2.4)) - 0.055; // sRGB, IEC 61966-2-1
-  colour = number.x + number.y > 0.0 ? vec4(number, 0.0, 1.0) : vec4(clamp(mix(low, high, step(0.0031308, sent)), 0.0, 1.0), 1.0) * alpha;
+  // sRGB, IEC 61966-2-1; roots in place of its power, 2.4, within 0.01 of 255, for processors that draw without a graphics card.
+  vec3 root = sqrt(max(sent, 1e-5)), fourth = sqrt(root), high = 0.65398581 * root + 0.68871364 * fourth - 0.3184755 * sqrt(fourth) - 0.02018856 * sent - 0.00406679;
+  colour = vec4(clamp(mix(12.92 * sent, high, step(0.0031308, sent)), 0.0, 1.0), 1.0) * alpha;
 }`;
 const TILT = 0.85, STEEPEST_TILT = 1.5; // radians from above: at first, at most
-const FINE = 2; // pixels of the picture for one of the screen, at least
+// Pixels of the picture for one of the screen: at rest the first at least, with smoothed edges; moving, as many as the machine keeps up with.
+const FINENESS = [2, 1.5, 1, 0.75, 0.5];
+const SLOW = 1000 / 45, FAST = 1000 / 57, JUDGED = 12, PATIENCE = 90; // ms from frame to frame that are too many, and enough; frames of a judgement, and before a finer try
+const SAMPLES = 4; // of a pixel at rest
 const linear = (colour) => [1, 3, 5].map((k) => { const c = parseInt(colour.slice(k, k + 2), 16) / 255; return c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4; });
+
+// How finely a moving picture is drawn: coarser at once where frames come too slowly, finer when they have come in time for long;
+// each finer try that fails makes the next one wait twice as long.
+class Pace {
+  constructor() { this.rung = 0; this.gaps = []; this.calm = 0; this.patience = PATIENCE; this.tried = false; }
+
+  get ratio() { return FINENESS[this.rung]; }
+
+  // A frame came so many ms after the one before, of which scripts took `own`: what they take no coarser picture gives back.
+  frame(gap, own) {
+    this.gaps.push(gap - own > 0.5 * gap ? gap : Math.min(gap, SLOW));
+    if (this.gaps.length < JUDGED) return;
+    const usual = this.gaps.sort((x, y) => x - y)[JUDGED >> 1];
+    this.gaps = [];
+    if (usual > SLOW && this.rung < FINENESS.length - 1) {
+      if (this.tried) this.patience *= 2;
+      this.rung++; this.calm = 0; this.tried = false;
+    } else if (usual > FAST) this.calm = 0;
+    else if ((this.calm += JUDGED) >= this.patience && this.rung > 0) { this.rung--; this.calm = 0; this.tried = true; }
+  }
+}
 
 class Solids {
   constructor(data, canvas) {
     this.solids = data.solids; this.coils = data.coils.map((one) => new Coil(one));
-    this.canvas = canvas; this.on = false; this.gl = null;
+    this.canvas = canvas; this.on = false; this.gl = null; this.pace = new Pace();
     this.level();
   }
 
@@ -56,7 +81,7 @@ class Solids {
   }
 
   start() {
-    const gl = this.canvas.getContext("webgl2", { antialias: true, premultipliedAlpha: true });
+    const gl = this.canvas.getContext("webgl2", { antialias: false, premultipliedAlpha: true });
     if (!gl) return false;
     const program = gl.createProgram();
     for (const [kind, text] of [[gl.VERTEX_SHADER, VERTEX], [gl.FRAGMENT_SHADER, FRAGMENT]]) {
@@ -70,9 +95,9 @@ class Solids {
     this.at = Object.fromEntries(["pose", "sight", "camera", "half_size", "scale", "depth", "light", "metal", "alpha", "mark", "number"].map((name) => [name, gl.getUniformLocation(program, name)]));
     this.gl = gl;
     this.pieces = this.solids.pieces.map((piece) => {
-      const faces = bytesOf(piece.faces), shape = this.shape(new Int16Array(bytesOf(piece.points).buffer), new Int8Array(bytesOf(piece.normals).buffer), gl.SHORT, gl.BYTE, faces);
-      return { ...shape, body: piece.body, scale: piece.scale, light: linear(piece.fill), metal: piece.metal ? 1 : 0, kind: piece.wide ? gl.UNSIGNED_INT : gl.UNSIGNED_SHORT, count: faces.length / (piece.wide ? 4 : 2) };
-    });
+      const faces = bytesOf(piece.faces), points = new Int16Array(bytesOf(piece.points).buffer), shape = this.shape(points, new Int8Array(bytesOf(piece.normals).buffer), gl.SHORT, gl.BYTE, faces);
+      return { ...shape, body: piece.body, scale: piece.scale, top: piece.scale * points.reduce((top, at, k) => (k % 3 === 2 && at > top ? at : top), -32767), closed: true, light: linear(piece.fill), metal: piece.metal ? 1 : 0, kind: piece.wide ? gl.UNSIGNED_INT : gl.UNSIGNED_SHORT, count: faces.length / (piece.wide ? 4 : 2) };
+    }).sort((one, other) => other.top - one.top); // what lies on top hides the rest before that is lit
     return true;
   }
 
@@ -105,14 +130,28 @@ class Solids {
     return { ...kept, body: coil.body, scale: 1, light: linear(coil.colours[0]), metal: 1, kind: gl.UNSIGNED_INT, count: faces.length, turned: base };
   }
 
-  // Everything at the poses given; with `numbered` each body in a colour that says its number.
-  draw(view, poses, look, numbered = false) {
-    const { gl, at, canvas } = this, ratio = Math.max(view.ratio, FINE), width = Math.round(view.width * ratio), height = Math.round(view.height * ratio);
+  // Several samples for each pixel of the canvas; what is drawn into them goes there by `blitFramebuffer`.
+  sample(width, height) {
+    const { gl } = this, kept = this.samples ?? (this.samples = { frame: gl.createFramebuffer(), stores: [gl.createRenderbuffer(), gl.createRenderbuffer()] });
+    gl.bindFramebuffer(gl.FRAMEBUFFER, kept.frame);
+    if (kept.width === width && kept.height === height) return;
+    Object.assign(kept, { width, height });
+    [[gl.RGBA8, gl.COLOR_ATTACHMENT0], [gl.DEPTH_COMPONENT24, gl.DEPTH_ATTACHMENT]].forEach(([kind, role], k) => {
+      gl.bindRenderbuffer(gl.RENDERBUFFER, kept.stores[k]);
+      gl.renderbufferStorageMultisample(gl.RENDERBUFFER, SAMPLES, kind, width, height);
+      gl.framebufferRenderbuffer(gl.FRAMEBUFFER, role, gl.RENDERBUFFER, kept.stores[k]);
+    });
+  }
+
+  // Everything at the poses given, as finely as the machine keeps up with where it is moving; with `numbered` each body in a colour that says its number.
+  draw(view, poses, look, moving = false, numbered = false) {
+    const { gl, at, canvas } = this, ratio = moving && this.pace.rung ? this.pace.ratio : Math.max(view.ratio, FINENESS[0]), width = Math.round(view.width * ratio), height = Math.round(view.height * ratio);
     if (canvas.width !== width || canvas.height !== height) { canvas.width = width; canvas.height = height; }
+    if (moving || numbered) gl.bindFramebuffer(gl.FRAMEBUFFER, null); else this.sample(width, height);
     const paper = numbered ? [0, 0, 0] : [1, 3, 5].map((k) => parseInt(look.paper.slice(k, k + 2), 16) / 255);
     gl.viewport(0, 0, width, height);
     gl.clearColor(...paper, 1); gl.depthMask(true); gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-    gl.enable(gl.BLEND); gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
+    gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
     // About the upright axis, then back from above; column by column.
     const c = Math.cos(view.turn + this.yaw), s = Math.sin(view.turn + this.yaw), ct = Math.cos(this.tilt), st = Math.sin(this.tilt);
     gl.uniformMatrix3fv(at.camera, false, [c, ct * s, -st * s, -s, ct * c, -st * c, 0, st, ct]);
@@ -123,6 +162,7 @@ class Solids {
     for (const piece of [...shown.filter((one) => !faded(one)), ...(numbered ? [] : shown.filter(faded))]) {
       const b = 3 * piece.body, angle = piece.turned ?? poses[b + 2], number = piece.body + 1;
       gl.depthMask(!faded(piece));
+      for (const [what, on] of [[gl.BLEND, faded(piece)], [gl.CULL_FACE, piece.closed && !faded(piece)]]) if (on) gl.enable(what); else gl.disable(what);
       gl.uniform4f(at.pose, poses[b], poses[b + 1], Math.cos(angle), Math.sin(angle));
       gl.uniform1f(at.scale, piece.scale); gl.uniform1f(at.metal, piece.metal); gl.uniform1f(at.alpha, faded(piece) ? FADED : 1);
       gl.uniform3fv(at.light, piece.light);
@@ -130,12 +170,16 @@ class Solids {
       gl.uniform2f(at.number, ...(numbered ? [(number & 255) / 255, (number >> 8) / 255] : [0, 0]));
       gl.bindVertexArray(piece.array); gl.drawElements(gl.TRIANGLES, piece.count, piece.kind, 0);
     }
+    if (moving || numbered) return;
+    gl.bindFramebuffer(gl.READ_FRAMEBUFFER, this.samples.frame); gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, null);
+    gl.blitFramebuffer(0, 0, width, height, 0, 0, width, height, gl.COLOR_BUFFER_BIT, gl.NEAREST);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
   }
 
   // The body at a place of the screen (CSS pixels), faded ones not; -1 where there is none.
   hit(view, poses, look, x, y) {
     const pixel = new Uint8Array(4);
-    this.draw(view, poses, look, true);
+    this.draw(view, poses, look, false, true);
     const { width, height } = this.canvas;
     this.gl.readPixels(Math.floor((x / view.width) * width), height - 1 - Math.floor((y / view.height) * height), 1, 1, this.gl.RGBA, this.gl.UNSIGNED_BYTE, pixel);
     return pixel[0] + 256 * pixel[1] - 1;

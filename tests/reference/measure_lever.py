@@ -1,7 +1,5 @@
 """The parts of a drawn lever escapement, measured by ways that share nothing with the package.
 
-    python scripts/checks/measure_lever.py [scene]
-
 Lock, lift, drop, draw, freedoms and the safety action: the drawings are read with ezdxf and turned against one another as
 polygons of shapely, whose chords deviate by less than ten nanometres; millimetres and degrees. `moments`: area and polar
 moment of outlines by Green's theorem with 30 digits (mpmath).
@@ -13,7 +11,7 @@ import math
 import re
 import sys
 from collections.abc import Callable, Iterable
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
@@ -464,16 +462,6 @@ def _beat(m: Escapement, paths: dict[int, Sweep], side: int) -> Beat:
     )
 
 
-def main(scene: Path) -> None:
-    """Print the table."""
-    entry, exit_, safety = measure(scene)
-    print(f"{'':14s} {'entry':>10s} {'exit':>10s}")
-    for name, value in asdict(entry).items():
-        print(f"{name:14s} {value:10.4f} {getattr(exit_, name):10.4f}")
-    for name, value in asdict(safety).items():
-        print(f"{name:18s} {value:10.4f}")
-
-
 DIGITS = 30
 NODES = 12
 Number: TypeAlias = Any  # mpmath.mpf, which has no types
@@ -549,11 +537,3 @@ def _slope(way: Callable[[Number], tuple[Number, Number]], edge: Edge | None, t:
         return -sweep * (y - mpmath.mpf(edge.y)), sweep * (x - mpmath.mpf(edge.x))
     (ax, ay), (bx, by) = way(mpmath.mpf(0)), way(mpmath.mpf(1))
     return bx - ax, by - ay
-
-
-if __name__ == "__main__":
-    sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-    from usage import arguments
-
-    default = Path(__file__).resolve().parents[2] / "profiles" / "swiss_lever" / "scene.toml"
-    main(arguments(__doc__, scene=(default, "the scene to measure")).scene)
