@@ -260,7 +260,11 @@ def merge(folders: Sequence[str | Path], folder: str | Path | None = None) -> To
             raise ValueError(f"{folders[0]} and {other} are shards of different studies: {names} differ")
         for number, row in more.items():
             if number in rows and _result(rows[number]) != _result(row):
-                raise ValueError(f"sample {number} of {other} differs from that of an earlier folder")
+                what = f"sample {number}" if number >= 0 else "the linear prediction"
+                raise ValueError(
+                    f"{what} of {other} differs from that of an earlier folder: have other versions of watchsim, numpy "
+                    "or shapely computed it? Compute those shards anew with one of them"
+                )
             rows.setdefault(number, row)
     if folder is not None:
         Path(folder).mkdir(parents=True, exist_ok=True)
