@@ -254,6 +254,7 @@ def test_all_faults_are_reported_at_once(desk):
 @pytest.mark.parametrize(
     ("options", "words"),
     [
+        (["--until", "±0.5"], ("until", "%")),
         (["--samples", "0", "--until", "2 mm", "--shard", "4/3"], ("samples", "until", "shard")),
         (["--samples", "1000000000"], ("from 16 to 1000000",)),
         (["--seed", "-1", "--workers", "0"], ("--seed -1", "--workers 0")),

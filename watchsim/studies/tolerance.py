@@ -86,10 +86,12 @@ def checked_samples(samples: int) -> int:
 
 
 def half_width(until: float | str | None) -> float | None:
-    """The share of "±0.5 %"; ValueError for another text."""
+    """The share of "±0.5 %"; ValueError for another text. A text needs its %: 0.5 would be half of all watches."""
     if until is None:
         return None
     try:
+        if isinstance(until, str) and "%" not in until:
+            raise UnitError(f'"{until}" has no %')
         value = parse(until.strip().removeprefix("±") if isinstance(until, str) else until, NUMBER)
     except UnitError as error:
         raise ValueError(f'until: {error}. Write "±0.5 %"') from error
