@@ -336,3 +336,7 @@ STEP_ROUNDING = 1e-9
 # Of the scale, for each of the tolerance: what the acceleration may do to the way between rows, and 32 times as much to the
 # acceleration itself. Large: rates between rows off; small: long tables.
 STRAY_PER_TOLERANCE = 32.0
+
+# Of w_N in w_T: on the line of centres, where a force across moves nothing, that is rounding. Friction does not hold a contact
+# there, whose slip passes zero. Too small: forces without bound, found for such a slip, stop the solver.
+NO_ARM = 1e-13

@@ -22,6 +22,8 @@ FOUND = [
     (1, 140, "records"),  # when it first knocked, and how often
     (1, 245, "records"),
     (1, 256, "records"),  # a balance held since before the recorded end
+    (4, 4, "records"),  # held for 2 s: half periods from before
+    (2, 1, "steady"),  # a contact on the line of centres as another opens
     (3, 97, "records"),  # it tripped before the recorded end
 ]
 

@@ -1,11 +1,12 @@
-"""Scenes in which all lengths, all times or all masses are so many times as large: the same mechanism in other units."""
+"""Scenes in which all lengths, times or masses are so many times as large, or which lie otherwise: the same mechanism."""
 
 from __future__ import annotations
 
 import dataclasses
+import math
 
 from watchsim.geometry.loops import Loop
-from watchsim.geometry.primitives import Arc, Edge
+from watchsim.geometry.primitives import Arc, Edge, Point
 from watchsim.scene.forces import Damping, LineSpring, Spring, Torque
 from watchsim.scene.scene import Body, Gear, Geared, Prescribed, Scene
 
@@ -123,3 +124,21 @@ class _Units:
         return dataclasses.replace(
             one, viscous=load / speed * one.viscous, quadratic=load / speed**2 * one.quadratic, coulomb=load * one.coulomb
         )
+
+
+def lying(scene: Scene, angle: float) -> Scene:
+    """The whole scene with its gravity turned by `angle` (rad): outlines in their frames, so that all angles are as before."""
+    c, s = math.cos(angle), math.sin(angle)
+
+    def image(point: Point) -> Point:
+        return c * point[0] - s * point[1], s * point[0] + c * point[1]
+
+    def body(one: Body) -> Body:
+        loops = tuple(loop.moved(angle, (0.0, 0.0)) for loop in one.loops)
+        velocity = (*image(one.velocity[:2]), *one.velocity[2:]) if len(one.velocity) == 3 else one.velocity
+        places = {name: image(getattr(one, name)) for name in ("position", "axis", "centre_of_mass")}
+        return dataclasses.replace(one, loops=loops, velocity=velocity, **places)
+
+    bodies = tuple(body(one) for one in scene.bodies)
+    lines = tuple(dataclasses.replace(one, points=tuple(image(point) for point in one.points)) for one in scene.line_springs)
+    return dataclasses.replace(scene, bodies=bodies, gravity=image(scene.gravity), line_springs=lines, path=None, reader=None)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from every_time import few
 from moving_scenes import PROFILES, profile
-from scaled_scenes import scaled
+from scaled_scenes import lying, scaled
 
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.state import EventKind, Stop
@@ -84,7 +84,7 @@ SCALES = (("length", 7.0), ("time", 1e-3), ("time", 3.0))
 
 
 @pytest.mark.parametrize("name", few(NAMES, lambda name: name in SHOWN))
-def test_counts_depend_on_neither_tolerance_nor_scale(name: str) -> None:
+def test_counts_depend_on_neither_tolerance_nor_scale_nor_orientation(name: str) -> None:
     scene, duration = profile(name), min(profile(name).duration, 1.0)
     known = counted(simulate(scene, duration, 1e-9))
     for tolerance in (1e-8, 1e-10, 1e-11):
@@ -94,3 +94,5 @@ def test_counts_depend_on_neither_tolerance_nor_scale(name: str) -> None:
         time = factor if kind == "time" else 1.0
         other = simulate(scaled(scene, **{kind: factor}), duration * time, 1e-9)
         assert counted(other) == known, (kind, factor)
+    for angle in (0.7, 2.9):  # rad
+        assert counted(simulate(lying(scene, angle), duration, 1e-9)) == known, angle

@@ -166,6 +166,7 @@ class Beats:
     tick        first noise, s: the impulse pin meets the fork; nan where nothing was heard
     period_s    from the passage two half swings ago to this one, s
     before      half swings of the run before the first one here, where not all events were kept
+    heard       whether so many of the run have a tick that the beat error is measured by them; None: judged by those here
     """
 
     body: str
@@ -179,6 +180,7 @@ class Beats:
     tick: Array
     period_s: Array
     before: int = 0
+    heard: bool | None = None
 
     def __repr__(self) -> str:
         count = f"{len(self)} half {'swing' if len(self) == 1 else 'swings'}"
@@ -212,7 +214,8 @@ class Beats:
     @property
     def mark(self) -> Array:
         """What the beat error is measured by, s: the ticks where they are heard, else the passages."""
-        return self.tick if len(self) and np.isfinite(self.tick).mean() >= HEARD else self.t
+        heard = bool(len(self) and np.isfinite(self.tick).mean() >= HEARD) if self.heard is None else self.heard
+        return self.tick if heard else self.t
 
     @property
     def half_period_s(self) -> Array:
@@ -254,7 +257,13 @@ def beats(run: Trajectory, body: str | None = None) -> Beats:
         tick=ticks(run, name, start, end, 0.5 * period),
         period_s=since_two_before(t)[complete],
         before=max(0, counted - len(complete)),
+        heard=_heard(run.sums) if run.keep == STATISTICS and body is None else None,
     )
+
+
+def _heard(sums: Mapping[str, Any]) -> bool | None:
+    """Have so many half swings of the whole run a tick? None where that was not counted."""
+    return bool(sums["half_swings"] and sums["ticks"] >= HEARD * sums["half_swings"]) if "ticks" in sums else None
 
 
 def beats_within(found: Beats, window: Sequence[float]) -> Beats:
@@ -282,6 +291,7 @@ def _swinging(run: Trajectory, body: str | None) -> str:
 Window = tuple[float, float]
 
 FEWEST_PERIODS = 3
+RECENT = 3.0  # periods before the window: so far back the half periods reach that are compared in it
 
 
 @dataclass(frozen=True, slots=True)
@@ -329,7 +339,9 @@ def averages(found: Beats, window: Window) -> Averages:
     amplitude, amplitude_error = mean_and_error(found.amplitude_deg[inside])
     period, period_error = mean_and_error(found.period_s[inside & (found.t - found.period_s >= start)])
     rate, rate_error = _rate(found.nominal_period, period, period_error)
-    uneven, uneven_error = mean_and_error(_unevenness(found)[inside])
+    # Of an oscillator that was held for long, what was before is not kept by every recording.
+    recent = since_two_before(found.t) <= found.t - start + RECENT * found.nominal_period
+    uneven, uneven_error = mean_and_error(_unevenness(found)[inside & recent])
     return Averages(
         start_s=start,
         end_s=end,
@@ -384,8 +396,7 @@ def whole_run(run: Trajectory, found: Beats) -> dict[str, Any] | None:
     if not sums.get("half_swings"):
         return None
     period = sums["period"]
-    heard = sums["ticks"] >= HEARD * sums["half_swings"]
-    uneven = sums["uneven_ticks" if heard else "uneven_passages"]
+    uneven = sums["uneven_ticks" if _heard(sums) else "uneven_passages"]
     return {
         "beats": sums["half_swings"],
         "amplitude_deg": _scaled(sums["amplitude"], math.degrees(1.0)) if found.angular else None,

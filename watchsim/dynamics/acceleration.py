@@ -26,7 +26,7 @@ from watchsim.dynamics.friction import (
 from watchsim.dynamics.lcp import Level, Solver
 from watchsim.dynamics.redundant import smallest_forces, solve_small, unit_scale
 from watchsim.jit import hot_kernel, kernel
-from watchsim.tolerances import ACCELERATION_ROUNDING, RANK
+from watchsim.tolerances import ACCELERATION_ROUNDING, NO_ARM, RANK
 
 
 @kernel
@@ -207,13 +207,23 @@ def _elements(model, closed, m, bearings, speed_zero, system, problem):
         friction, slides = law.friction, friction_at(law, abs(slip))
         problem.element[i] = -1
         problem.drag[i] = slides if begun == FORWARD or (slip > 0.0 and begun == STICK) else -slides
-        if friction > 0.0 and abs(slip) <= speed_zero and begun == STICK:
+        if not (friction > 0.0 and abs(slip) <= speed_zero and begun == STICK):
+            continue
+        if _has_no_arm(system.G, i):
+            problem.begun[i] = BACKWARD if system.b[2 * i + 1] < 0.0 else FORWARD
+        else:
             problem.element[i], problem.drag[i] = elements, friction
             elements = add_element(problem, i, elements, (2.0 * friction, 0.0, 0.0))
     for p in range(bearings):
         dry = system.dry[problem.bearing[p]]
         elements = add_element(problem, m + p, elements, (0.0, 2.0 * dry, -dry))
     return elements
+
+
+@kernel
+def _has_no_arm(G, i):
+    """True if forces across contact i move nothing but by rounding (method 2.6): nothing holds its slip."""
+    return 0.0 < G[2 * i + 1, 2 * i + 1] <= NO_ARM * NO_ARM * G[2 * i, 2 * i]
 
 
 @kernel
