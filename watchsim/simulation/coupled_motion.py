@@ -511,7 +511,8 @@ def motion(model, regime, options, t, smooth, out_counts):
     q, u = smooth.y[:n], smooth.y[n : 2 * n]
     closed, out = smooth.closed, smooth.dy
     forces(model, t, q, u, system.h)
-    stay_on_side(model, smooth.step.side, q, system.h)
+    if smooth.held.pinned:
+        stay_on_side(model, smooth.step.side, q, system.h)
     begin_loads(model, t, q, u, system)
     add_drag(system.dry, regime.grip, system.h)
     for b in range(len(model.bodies)):

@@ -20,16 +20,22 @@ ON_PIN = 1e-12  # rad: a step that begins so near to a pin begins on it
 
 @kernel
 def begin_on_pins(model, a, out_step):
-    """Which pins the coils bear on at the start of a step, into `out_step.side`; on a pin the motion says it."""
+    """Which pins the coils bear on at the start of a step, into `out_step.side`; on a pin the motion says it.
+
+    Returns 1 if there are any, else 0.
+    """
+    found = 0
     for i in range(len(model.coordinates)):
         coordinate = model.coordinates[i]
         if coordinate.pinned == 0.0:
             continue
+        found = 1
         way, onward = out_step.q[i] - coordinate.rest, out_step.u[i] if out_step.u[i] != 0.0 else a[i]
         high, low = way - coordinate.pin_high, way - coordinate.pin_low
         is_high = onward > 0.0 if abs(high) <= ON_PIN else high > 0.0
         is_low = onward < 0.0 if abs(low) <= ON_PIN else low < 0.0
         out_step.side[i] = HIGH_PIN if is_high else (LOW_PIN if is_low else BETWEEN_PINS)
+    return found
 
 
 @kernel

@@ -362,7 +362,7 @@ def _smooth_step(model, cells, state, options, end_time, scratch, record):
         leave, code = first_leave(model, state.regime, options, smallest, scratch.smooth, state.counts)
     step = scratch.step
     length = step.span.length
-    if not flying:
+    if not flying and scratch.smooth.held.pinned:
         pin = first_pin(model, step)
         length, leave = min(length, pin), leave if leave <= pin else math.inf
     known, touch, contact = first_touch(model, cells, state, options, min(length, leave), scratch)

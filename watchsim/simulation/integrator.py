@@ -453,7 +453,7 @@ def _begin_step(model, state, smooth):
         step.y0[i], step.y0[n + i] = state.q[i], state.u[i]
     for i in range(SUMS):
         step.y0[2 * n + i] = 0.0
-    begin_on_pins(model, state.a, step)
+    smooth.held.pinned = begin_on_pins(model, state.a, step)
     engage(model, regime.active, state.instant, smooth)
 
 

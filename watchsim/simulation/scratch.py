@@ -190,6 +190,7 @@ class Held:
     contacts: int  # in force, of awake bodies
     lenience: float  # that of the instant at which they were decided
     jammed: int  # 1: see `LastProblem`
+    pinned: int  # 1: springs play between curb pins
 
 
 class Smooth(NamedTuple):
