@@ -404,6 +404,30 @@ def test_the_page_of_a_clock_opens_with_its_escapement_and_the_whole_beside_it(t
         assert page.said == []
 
 
+@pytest.mark.parametrize("profile", ["coaxial", "graham"])
+def test_on_a_phone_held_sideways_picture_and_controls_are_seen_at_once(profile: str, tmp_path: Path) -> None:
+    run = simulate(load(Path(str(profiles_dir())) / profile / "scene.toml"), duration=1.2, record="all")
+    with opened(report(run, tmp_path / "page.html"), 740, 360) as page:
+        bar, picture = (page.locator(which).bounding_box() for which in (".bar", "#picture"))
+        assert bar["y"] + bar["height"] <= 360.0 and bar["height"] < 60.0
+        assert picture["height"] > 200.0 and picture["y"] + picture["height"] <= bar["y"] + 25.0
+        assert all(one.bounding_box()["x"] + one.bounding_box()["width"] <= 740.0 for one in page.locator(".bar button").all())
+
+
+def test_names_with_underscores_are_read_as_words_and_wear_takes_the_colours_of_the_page(tmp_path: Path) -> None:
+    text = (Path(str(profiles_dir())) / "incline" / "scene.toml").read_text().split("[expect]")[0]
+    (tmp_path / "scene.toml").write_text(text.replace("disc", "small_disc").replace("friction    = 0.3", "friction = 0.02"))
+    run = simulate(load(tmp_path / "scene.toml"), duration=1.0, record="all")
+    with opened(report(run, tmp_path / "page.html"), scheme="dark") as page:
+        buttons = page.locator("#parts button").all_text_contents()
+        assert any(one.startswith("small disc") for one in buttons) and not any("_" in one for one in buttons)
+        pictures = [page.locator(f".wear .{which} img") for which in ("light", "night")]
+        assert [one.is_visible() for one in pictures] == [False, True]
+        assert iio.imread(pictures[1].screenshot())[5, 5, :3].max() < 60
+        page.click("#theme")
+        assert [one.is_visible() for one in pictures] == [True, False]
+
+
 @pytest.mark.parametrize("profile", ["swiss_lever", "coaxial", "graham", "pin_pallet", "cylinder"])
 def test_names_stand_apart_and_on_their_parts(profile: str, tmp_path: Path) -> None:
     scene = load(Path(str(profiles_dir())) / profile / "scene.toml")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator
+from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
@@ -110,3 +111,16 @@ def test_outline_points_read_back_lie_on_the_model(made) -> None:
             assert distance(at_home, (*body.loops, *body.decoration)) <= SHARE * 1e-3 * width, body.name
             seen += 1
     assert seen > 20
+
+
+def test_the_small_whole_of_a_printed_clock_has_lines_as_fine_as_it_is_small() -> None:
+    """Lines that kept their width on paper made it a dark blob."""
+    run = ws.simulate(ws.load(ws.profiles_dir() / "graham"), duration=1.2, record="all")
+    text = str(poster(run, (0.0, 1.2), drawn_parts(run.scene, 0.1), 1.0))
+    left, _, width, height = map(float, re.search(r'viewBox="([^"]*)"', text)[1].split())
+    scale = matrix(re.search(r"<use[^>]*transform=\"([^\"]*)\"", text)[1])[0, 0]
+    pens = [float(pen) for pen in re.findall(r'stroke-width="([^"]*)"', text)]
+    assert 0.0 < scale < 0.5 and -left < 0.35 * width
+    assert max(pens) < 0.01 * height and scale * max(pens) < 0.02 * -left
+    css = (Path(ws.__file__).parent / "pages" / "assets" / "page.css").read_text()
+    assert "non-scaling-stroke" not in text + css

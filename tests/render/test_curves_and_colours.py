@@ -20,6 +20,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb, to_rgba
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 from matplotlib.text import Text
 from render.colour_vision import VISIONS, lab, least_difference, linear
 from render.fake_runs import watch_run
@@ -343,6 +344,14 @@ def test_shades_of_phases_are_distinct_and_keep_their_hue(style: Style) -> None:
     for name, shade in style.phases.items():
         (_, a, b), (_, c, d) = lab(linear(shade)), lab(linear(PHASE_LINES[name]))
         assert abs(math.remainder(math.atan2(b, a) - math.atan2(d, c), math.tau)) < 0.55, name
+
+
+def test_a_key_has_every_colour_that_lies_behind_forces() -> None:
+    """A Swiss lever has an impulse on the stone and another on the tooth, in two greens."""
+    made = ws.plot_forces(ws.simulate("profiles/swiss_lever", 1.0))
+    shades = {to_rgba(one.get_facecolor()) for axes in made.axes for one in axes.patches}
+    assert len(shades) > 4 and shades <= {to_rgba(one.get_facecolor()) for one in made.artists if isinstance(one, Patch)}
+    assert {"impulse", "second impulse"} <= {one.get_text() for one in made.texts}
 
 
 @pytest.mark.parametrize("vision", VISIONS)

@@ -101,6 +101,7 @@ def test_options_of_an_mp4() -> None:
 def test_where_a_movie_can_be_written(tmp_path: Path) -> None:
     (tmp_path / "folder.mp4").mkdir()
     assert check_path(str(tmp_path / "a.Mp4")) == tmp_path / "a.Mp4" and check_path(tmp_path / "b.gif") == tmp_path / "b.gif"
-    for name, error in (("a.avi", ValueError), ("no/a.mp4", FileNotFoundError), ("folder.mp4", IsADirectoryError)):
+    assert check_path(tmp_path / "new" / "a.mp4") == tmp_path / "new" / "a.mp4"  # missing folders are made
+    for name, error in (("a.avi", ValueError), ("folder.mp4", IsADirectoryError)):
         with pytest.raises(error):
             check_path(tmp_path / name)

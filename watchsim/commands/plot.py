@@ -23,7 +23,7 @@ def options(parser: argparse.ArgumentParser) -> None:
         "--kind",
         metavar="NAMES",
         help="kinematics (default), phases, timeline (the mechanism in each phase), phase-portrait, torque (on the balance), "
-        "forces (at contacts and bearings), energy, timing, tape, wear (along outlines), with commas; "
+        "forces (at contacts and bearings), energy, sound (of a beat), timing, tape, wear (along outlines), with commas; "
         f" {ALL}: every one that the run has",
     )
     parser.add_argument(

@@ -338,7 +338,7 @@ def text(function: Function) -> Iterator[str]:
     if any(_stands_out(getattr(one, name)) for one in function.pallets or () for name in WORDS):
         yield f"      {'':24}teeth are counted anticlockwise in the drawing, 1 is nearest to the x axis"
     if function.swung is not None:
-        ends = " and ".join(f"{math.degrees(end):.3f}°" for end in function.swung)
+        ends = " and ".join(f"{signed(math.degrees(end), 3)}°" for end in function.swung)
         yield f"      swung out to {ends}: half as far again as from let-off to let-off"
     for what, why in function.missing:
         yield f"  {what}: not measured, {why}"

@@ -21,6 +21,7 @@ from watchsim.render.view import Window, recorded
 from watchsim.results.tables import plain
 from watchsim.simulation.trajectory import Trajectory
 from watchsim.storage.write import write_file
+from watchsim.units import metric
 
 ENDINGS = (".html", ".htm")
 HALVINGS = 12
@@ -108,6 +109,7 @@ def _motion(run: Trajectory, window: Sequence[float] | None) -> tuple[Window, li
 
 def _worn(run: Trajectory) -> Markup:
     """What wore in the last beats, along the outlines; nothing where nothing slides, or the run does not know."""
+    from watchsim.render.palette import dark
     from watchsim.render.style import small_png  # with matplotlib, which takes half a second to load
     from watchsim.render.wear_plot import plot_wear
 
@@ -116,8 +118,10 @@ def _worn(run: Trajectory) -> Markup:
     except ValueError:
         return Markup("")
     words = "Archard's index of the last beats as colour along the outlines that slide on each other"
-    shown = image(small_png(figure, WORN_DOTS), words, WORN_DOTS)
-    return section("wear", "What wears", element("div", shown, class_="scroll", tabindex=0, role="region", aria_label=words))
+    light = element("div", image(small_png(figure, WORN_DOTS), words, WORN_DOTS), class_="light")
+    night = element("div", image(small_png(dark(figure), WORN_DOTS), words, WORN_DOTS), class_="night")
+    look = {"class_": "scroll", "tabindex": 0, "role": "region", "aria_label": words}
+    return section("wear", "What wears", element("div", light, night, **look))
 
 
 def _lead(run: Trajectory, span: Window) -> str:
@@ -137,7 +141,7 @@ def _saved(left_out: list[str]) -> Markup:
 
 def _made(numbers: Mapping[str, Any], off: float) -> Markup:
     version = (numbers.get("versions") or {}).get("watchsim")
-    exact = f"{1e9 * off:.2g} nm" if off < 1e-6 else f"{1e6 * off:.2g} µm"
+    exact = metric(off, "m", 2)
     return joined(
         (f"watchsim {version}. " if version else "", f"Outlines stand within {exact} of the motion that was computed.")
     )

@@ -146,7 +146,8 @@ def phase_tables(phases: Iterable[Phase]) -> Iterator[Markup]:
         shown = [k for k, head in enumerate(HEAD_PHASE_TABLES) if not (anchor and head.startswith("lever"))]
         rows = [[kind.row()[k] for k in shown] for kind in kinds]
         heads = [HEAD_PHASE_TABLES[k] for k in shown]
-        parts += [strip(lengths, "ms", words), table(heads, rows, f"{title.capitalize()}: means of {count} beats")]
+        caption = f"{title.capitalize()}: means of {count} beats" if count > 1 else f"{title.capitalize()}: one"
+        parts += [strip(lengths, "ms", words), table(heads, rows, caption)]
     if parts:
         yield section("phases", "Phases of a beat", *parts)
 

@@ -17,11 +17,14 @@ from watchsim.studies.tolerance_result import ToleranceStudy
 
 DOTS = 1400  # across the picture
 MOST = 12  # contributions in a table
+VIEWPORT = element("meta", name_="viewport", content="width=device-width, initial-scale=1")
 LOOK = Markup(
     "body{font:15px/1.45 system-ui,sans-serif;color:#23272c;background:#f6f3ed}"
     "body{max-width:1100px;margin:24px auto;padding:0 16px}"
     "h1{font-size:22px}h2{font-size:17px;margin-top:28px}table{border-collapse:collapse;font-size:14px}"
-    "th,td{padding:3px 10px;text-align:right;border-bottom:1px solid #ddd8ce}th:first-child,td:first-child{text-align:left}"
+    "th,td{padding:3px 10px;text-align:right;border-bottom:1px solid #ddd8ce}"
+    "th:first-child,table:not(.numbers) :is(th,td){text-align:left}"
+    "td:not(:last-child){white-space:nowrap}.picture img{min-width:640px}"
     "caption{text-align:left;color:#5b6168;padding-bottom:4px}.scroll{overflow-x:auto}img{max-width:100%;height:auto}"
     ".yield{font-size:19px}code{background:#ece7dd;padding:1px 4px}"
 )
@@ -45,13 +48,14 @@ def drawn(figure: Any, words: str) -> Markup:
     """A figure in the page; `words` for readers that show no pictures."""
     made = io.BytesIO()
     figure.savefig(made, format="png", dpi=DOTS / figure.get_figwidth())
-    return image(made.getvalue(), words, round(figure.get_figwidth() / MM * 6))
+    shown = image(made.getvalue(), words, round(figure.get_figwidth() / MM * 6))
+    return element("div", shown, class_="scroll picture", tabindex=0, role="region", aria_label=words)
 
 
 def written(title: str, parts: Sequence[Content], path: str | Path) -> Path:
     """The page of a study with these parts below its title, as one file."""
     target = check_page(path)
-    head = element("head", element("meta", charset="utf-8"), element("title", title), element("style", LOOK))
+    head = element("head", element("meta", charset="utf-8"), VIEWPORT, element("title", title), element("style", LOOK))
     text = joined([Markup("<!doctype html>"), element("html", head, element("body", element("h1", title), *parts), lang="en")])
     write_file(target, lambda place: place.write_bytes(text.encode("utf-8", "replace")), "the page")
     return target
@@ -90,13 +94,14 @@ def _tolerances(study: ToleranceStudy) -> Markup:
 
 def _contributions(study: ToleranceStudy) -> list[Content]:
     found: list[Content] = []
+    labels = {one.column: one.label for one in OUTPUTS.values()}
     for name, each in study.contributions.items():
         rows = [
             (one.key, *(_number(value) for value in (one.first, one.total, one.total_error, one.linear, one.rank)))
             for one in each[:MOST]
         ]
         known = f", {_percent(study.explained[name])} of the variance explained" if name in study.explained else ""
-        found.append(table(("", "alone", "total", "± ", "linear", "rank"), rows, f"{name}{known}"))
+        found.append(table(("", "alone", "total", "± ", "linear", "rank"), rows, f"{labels.get(name, name)}{known}"))
     return found
 
 

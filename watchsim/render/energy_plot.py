@@ -23,6 +23,7 @@ from watchsim.analysis.timeline import Beat, Stage, shown_beats
 from watchsim.analysis.timeline import title as phase_title
 from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.render import style
+from watchsim.render.marks import spaced
 from watchsim.render.palette import ENERGIES, FAINT, INK
 from watchsim.render.phase_plots import bands, beat_name
 from watchsim.scene.roles import roles
@@ -265,7 +266,7 @@ def plot_torque(
     table = LINE * (2.5 + max(len(one) for one in found))
     step = TORQUE_OVER + TALL + TORQUE_UNDER + table
     made = style.figure(width, TORQUE_TOP + rows * step, ax=ax)
-    name = roles(run.scene).oscillator
+    name = spaced(roles(run.scene).oscillator or "")
     style.heading(made, run.scene.title, f"Torque on {name}, with its swing; triangles: impacts")
     largest = max((float(np.abs(one.torque).max()) for push in found for one in push), default=0.0) or 1.0
     factor, unit = style.scaled_unit(largest, "N·m")

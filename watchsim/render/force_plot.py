@@ -19,7 +19,7 @@ from watchsim.analysis.forces import Forces, forces, just_before
 from watchsim.analysis.phases import Phase
 from watchsim.analysis.timeline import BEGINNING, RESTING
 from watchsim.render import style
-from watchsim.render.marks import clock
+from watchsim.render.marks import clock, spaced
 from watchsim.render.palette import looks
 from watchsim.render.phase_plots import name_key, names_in, shade
 from watchsim.render.rows import reduced
@@ -196,13 +196,15 @@ def _column(
         style.limits(panel_axes, float(drawn.min()), float(drawn.max()), 0.05, FLAT, 1.0)
         panel_axes.ticklabel_format(axis="y", useOffset=False)
         if first or wide:
-            style.title(panel_axes, name if name != BEARINGS else layout.bearings)
+            style.title(panel_axes, spaced(name) if name != BEARINGS else layout.bearings)
         if first:
             panel_axes.set_ylabel(f"force ({unit})", labelpad=1.5)
         low, columns = (OVER / TALL * layout.raised, layout.columns) if name == BEARINGS else (0.0, len(lines))
         where: dict[str, Any] = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0 + low), "borderaxespad": 0.0}
         if wide or not first:  # side by side in a column of text: names on the left, keys on the right
-            style.key(panel_axes, [(h, line[0]) for h, line in zip(handles, lines, strict=True)], ncols=columns, **where)
+            style.key(
+                panel_axes, [(h, spaced(line[0])) for h, line in zip(handles, lines, strict=True)], ncols=columns, **where
+            )
         panel_axes.set_xlim(*map(time.at, span))
         for beat in phases:
             shade(panel_axes, beat, time.base, time.factor)

@@ -21,7 +21,7 @@ from matplotlib.transforms import Affine2D, IdentityTransform
 
 from watchsim.analysis.phases import Phase
 from watchsim.geometry.loops import Loop
-from watchsim.render.marks import STONES, PalletStones, clock
+from watchsim.render.marks import STONES, PalletStones, clock, spaced
 from watchsim.render.palette import Style, looks
 from watchsim.render.parts import LastingPatch, Part, loops_of, outline, parts, pose_matrix
 from watchsim.render.patches import CoilPatches
@@ -312,7 +312,7 @@ class Strip:
             axes.plot(time.at(t), self._shown(values), color=line, linewidth=0.11 * self._size)
             axes.set_xlim(time.at(start), time.at(end))
             axes.set_ylim(*self._reach[k])
-            self._dress(axes, f"{self._body.name}\n{unit}", k == 1)
+            self._dress(axes, f"{spaced(self._body.name)}\n{unit}", k == 1)
         axes.set_xlabel(time.label, fontsize=0.8 * self._size, color=self._style.ink, labelpad=0.05 * self._size)
         canvas.draw()
         return np.array(canvas.buffer_rgba())[:height, :width].copy(), (left, width - right)

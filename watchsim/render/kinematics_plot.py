@@ -24,7 +24,7 @@ from matplotlib.ticker import ScalarFormatter
 
 from watchsim.analysis.phases import Phase
 from watchsim.render import style
-from watchsim.render.marks import clock
+from watchsim.render.marks import clock, spaced
 from watchsim.render.palette import FAINT, looks
 from watchsim.render.phase_plots import name_key, names_in, shade, strong
 from watchsim.render.rows import COLUMNS, bands, distinct, envelope, reduced
@@ -189,7 +189,7 @@ def channels(run: Trajectory, body: Body) -> list[Channel]:
 def _panel(axes: Axes, channel: Channel, quantity: str, colour: str) -> None:
     style.dress(axes)
     axes.set_ylabel(f"{channel.names[quantity]} ({channel.units[quantity]})")
-    style.title(axes, channel.body.name, colour)
+    style.title(axes, spaced(channel.body.name), colour)
     axes.yaxis.set_offset_position("right")  # opposite the title
     lines = []
     for k in range(len(channel.columns)):
@@ -262,7 +262,7 @@ def plot_phase_portrait(
         raise ValueError("nothing to plot: no body of this run moves")
     across = min(1 if width < style.NARROW else 3, len(shown))
     rows = -(-len(shown) // across)
-    names = names_in(phases)
+    names = names_in(phases, banded=False)
     step = OVER + TALL + UNDER
     top = TOP + (5.0 if width >= style.NARROW else 8.0)
     made = style.figure(width, top + rows * step, ax=ax)
@@ -280,7 +280,7 @@ def plot_phase_portrait(
 def _portrait(axes: Axes, channel: Channel, rows: tuple[Array, Array, Array], phases: list[list[Phase]], colour: str) -> None:
     t, q, u = rows
     style.dress(axes)
-    style.title(axes, channel.body.name, colour)
+    style.title(axes, spaced(channel.body.name), colour)
     axes.axhline(0.0, color=FAINT, linewidth=0.5, zorder=1)
     lines = []
     for k, column in enumerate(channel.columns):

@@ -244,7 +244,7 @@ SHORT = 1.0  # s; a shorter window is given in milliseconds from its start
 
 @dataclass(frozen=True)
 class Clock:
-    """Time as `value` times a unit after `base` seconds: "19.4 s + 12.5 ms"."""
+    """Time at an axis, so many units after `base` seconds; an instant is "19.4125 s"."""
 
     base: float
     factor: float
@@ -256,8 +256,9 @@ class Clock:
 
     def text(self, t: float, step: float) -> str:
         """The time, with as many digits as distinguish two instants `step` seconds apart."""
-        number = signed(self.at(t), decimals_for(step * self.factor))
-        return f"{number} {self.unit}" if self.base == 0.0 else f"{self.base:.9g} s + {number} {self.unit}"
+        if self.base != 0.0:
+            return f"{signed(t, decimals_for(step))} s"
+        return f"{signed(self.at(t), decimals_for(step * self.factor))} {self.unit}"
 
     @property
     def label(self) -> str:
@@ -312,6 +313,11 @@ def turn_text(turn: float) -> str:
         return ""
     way = "" if abs(degrees) == 180.0 else " clockwise" if degrees < 0.0 else " counter-clockwise"
     return f"picture turned by {abs(degrees):g}°{way}"
+
+
+def spaced(name: str) -> str:
+    """The name of a body or layer, or a pair of such, as a label has it: "balance wheel" of `balance_wheel`."""
+    return name.replace("_", " ")
 
 
 def goes_round(angles: Array) -> bool:

@@ -304,6 +304,6 @@ def _repaint(artist: Any) -> None:
             artist.set_facecolor(on_dark(face, face=True))
         if edge[3]:
             artist.set_edgecolor(on_dark(edge))
-    elif isinstance(artist, Collection):
+    elif isinstance(artist, Collection) and artist.get_array() is None:  # colours that are numbers stay those of their scale
         artist.set_facecolor([on_dark(colour, face=True) for colour in artist.get_facecolor()])
         artist.set_edgecolor([on_dark(colour) for colour in artist.get_edgecolor()])

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.path import Path
@@ -19,7 +19,7 @@ from watchsim.analysis.timeline import pallet_side
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Point
 from watchsim.mechanism.compile import compile_scene
-from watchsim.render.marks import STONES, PalletStones
+from watchsim.render.marks import STONES, PalletStones, spaced
 from watchsim.render.palette import Style
 from watchsim.render.parts import LastingPatch, loops_of, pose_matrix
 from watchsim.render.view import Frame, Pixels, hairsprings, seen
@@ -51,7 +51,7 @@ def part_names(scene: Scene) -> list[PartName]:
     found = with_anchor(scene)
     if found.oscillator is None or found.wheel is None:
         moving = [body for body in scene.bodies if body.loops and body.motion == "pivot"]
-        return [PartName(body.name.replace("_", " "), body.name, (0.0, 0.0)) for body in moving]
+        return [PartName(spaced(body.name), body.name, (0.0, 0.0)) for body in moving]
     whole = [PartName("escape wheel", found.wheel, (0.0, 0.0))]
     whole.append(
         PartName(
@@ -155,14 +155,14 @@ class Met:
         if known is not None and (wheel not in bodies or known == "impulse stone"):
             return known
         if wheel is None or lever is None or self._parts.oscillator is None:
-            return f"{body} {layer}"
+            return spaced(f"{body} {layer}")
         if body == wheel:
             return "wheel"
         if body == lever and wheel in bodies:
             met = self._compiled.model.contacts[contact]
             stone = next(side for side in (int(met.a), int(met.b)) if self._compiled.owners[side] == body)
             return f"{pallet_side(self._run, self._compiled, self._parts, stone, time)} {self._kind}"
-        return f"{body} {layer}"
+        return spaced(f"{body} {layer}")
 
 
 def _studs(scene: Scene) -> Iterator[PartName]:
@@ -197,13 +197,13 @@ class Label:
     """A name in a picture, in pixels from its lower left corner.
 
     box   left, bottom, right, top of the text
-    line  (3, 2), from the name to its place; None where it would cross another, or the place is out of sight
+    line  (3, 2), from the name to its place
     at    (2,): the place
     """
 
     name: PartName
     box: tuple[float, float, float, float]
-    line: Array | None
+    line: Array
     at: Array
 
 
@@ -231,7 +231,11 @@ class Labels:
         self._slot_of = linear_sum_assignment(apart)[1].tolist()
 
     def at(self, frames: dict[str, Array], matrix: Array) -> list[Label]:
-        """The labels for the poses x, y, angle of one instant, in a picture with that map from metres."""
+        """The labels for the poses x, y, angle of one instant, in a picture with that map from metres.
+
+        A name is left out where its place is out of sight, or its line would cross a shorter one: what a name without a line
+        belongs to could not be seen.
+        """
         found: list[Label] = []
         for name, slot in zip(self._names, self._slot_of, strict=True):
             on_left, edge, y, begin = self._slots[slot]
@@ -239,24 +243,20 @@ class Labels:
             x = edge if on_left else edge - width
             place = name.seen(frames, matrix)
             line = np.array([(x + width + 0.3 * size if on_left else x - 0.3 * size, y), (begin, y), place])
-            shown = self._room.near(float(place[0]), float(place[1]), 0.0)
-            found.append(Label(name, (x, y - 0.45 * size, x + width, y + 0.55 * size), line if shown else None, place))
-        kept: list[Array] = []
-        clear = []
-        for label in sorted(found, key=lambda one: math.inf if one.line is None else math.dist(*one.line[1:].tolist())):
-            crossed = label.line is None or any(_cross(label.line, other) for other in kept)
-            clear.append(replace(label, line=None) if crossed else label)
-            if not crossed and label.line is not None:
-                kept.append(label.line)
+            if self._room.near(float(place[0]), float(place[1]), 0.0):
+                found.append(Label(name, (x, y - 0.45 * size, x + width, y + 0.55 * size), line, place))
+        clear: list[Label] = []
+        for label in sorted(found, key=lambda one: math.dist(*one.line[1:].tolist())):
+            if not any(_cross(label.line, other.line) for other in clear):
+                clear.append(label)
         return clear
 
     def lines(self, labels: Sequence[Label], style: Style, unit: float) -> Iterator[LastingPatch]:
         """Their lines, each with a dot at its place; `unit` is the size of everything drawn."""
         look = {"transform": IdentityTransform(), "edgecolor": style.ink, "facecolor": style.ink, "linewidth": max(unit, 0.6)}
         for label in labels:
-            if label.line is not None:
-                dot = Path.circle((float(label.at[0]), float(label.at[1])), max(DOT * unit, 1.5))
-                yield from (LastingPatch(Path(label.line), fill=False, **look), LastingPatch(dot, **look))
+            dot = Path.circle((float(label.at[0]), float(label.at[1])), max(DOT * unit, 1.5))
+            yield from (LastingPatch(Path(label.line), fill=False, **look), LastingPatch(dot, **look))
 
     def write(self, labels: Sequence[Label], out_pixels: Pixels) -> None:
         """Write the names, which stand on the picture's ground."""

@@ -22,7 +22,7 @@ from watchsim.analysis.phases import Phase
 from watchsim.analysis.timeline import Beat, Stage, shown_beats, title
 from watchsim.mechanism.compile import compile_scene
 from watchsim.render import style
-from watchsim.render.marks import round_below
+from watchsim.render.marks import round_below, spaced
 from watchsim.render.palette import ELSE, FAINT, FORCE, INK, PHASE_LINES, PHASES, SECOND, looks
 from watchsim.render.parts import Posed, loops_of, outline
 from watchsim.render.view import Window, dense, placed, poses
@@ -31,6 +31,7 @@ from watchsim.simulation.trajectory import Array, Trajectory
 from watchsim.units import metric
 
 SWATCH, AFTER_SWATCH, APART = 2.6, 1.0, 3.5  # mm; from one name to the next swatch
+AGAIN = "second impulse"  # of a beat
 
 
 def bands(phases: Iterable[Phase]) -> list[tuple[Phase, str]]:
@@ -40,9 +41,13 @@ def bands(phases: Iterable[Phase]) -> list[tuple[Phase, str]]:
         if phase.name == "locked":
             continue
         impulses += phase.name == "impulse"
-        colour = SECOND if phase.name == "impulse" and impulses == 2 else PHASES.get(phase.name, ELSE)
-        found.append((phase, colour))
+        found.append((phase, shade_of(AGAIN if phase.name == "impulse" and impulses == 2 else phase.name)))
     return found
+
+
+def shade_of(name: str) -> str:
+    """The colour of a phase where it is a band."""
+    return SECOND if name == AGAIN else PHASES.get(name, ELSE)
 
 
 def strong(name: str) -> str:
@@ -50,9 +55,19 @@ def strong(name: str) -> str:
     return PHASE_LINES.get(name, FAINT)
 
 
-def names_in(beats: Iterable[Iterable[Phase]], left_out: Sequence[str] = ("locked",)) -> list[str]:
-    """The names of the phases, each once, in their order."""
-    return list(dict.fromkeys(phase.name for beat in beats for phase in beat if phase.name not in left_out))
+def names_in(beats: Iterable[Iterable[Phase]], left_out: Sequence[str] = ("locked",), banded: bool = True) -> list[str]:
+    """The names of the phases, each once, in their order; `banded`: of an impulse that follows another, too."""
+    names: list[str] = []
+    for beat in beats:
+        own = [phase.name for phase in beat if phase.name not in left_out]
+        names += own
+        if banded and own.count("impulse") > 1:
+            names.append(AGAIN)
+    found = list(dict.fromkeys(names))
+    if AGAIN in found:
+        found.remove(AGAIN)
+        found.insert(found.index("impulse") + 1, AGAIN)
+    return found
 
 
 def beat_name(beat: Beat) -> str:
@@ -99,7 +114,7 @@ def name_key(figure: Figure, names: Iterable[str], top: float, lines: bool = Fal
         if x > style.EDGE and x + own > wide - style.EDGE:
             x, y = style.EDGE, y + 1.15 * row
         tall = 0.7 if lines else 0.7 * row
-        colour = strong(name) if lines else PHASES.get(name, ELSE)
+        colour = strong(name) if lines else shade_of(name)
         place, size = (x / wide, 1.0 - (y + 0.5 * tall) / high), (SWATCH / wide, tall / high)
         figure.add_artist(Rectangle(place, *size, color=colour, linewidth=0.0, transform=figure.transSubfigure))
         figure.text(
@@ -180,8 +195,8 @@ def _column(
         column, colour = run.slices[name].start, worn[name].line
         fast = bool(np.degrees(np.abs(run.u[shown, column]).max()) >= KILO)  # the same in all columns
         for axes, values, unit in (
-            (panels[2 * k], np.degrees(q[:, column]), f"{name} (°)"),
-            (panels[2 * k + 1], np.degrees(u[:, column]) / (KILO if fast else 1.0), f"{name} ({'1000 ' * fast}°/s)"),
+            (panels[2 * k], np.degrees(q[:, column]), f"{spaced(name)} (°)"),
+            (panels[2 * k + 1], np.degrees(u[:, column]) / (KILO if fast else 1.0), f"{spaced(name)} ({'1000 ' * fast}°/s)"),
         ):
             axes.plot(x, values, color=colour, linewidth=style.CURVE, solid_joinstyle="round", zorder=3)
             axes.set_xlim(1e3 * (span[0] - zero), 1e3 * (span[1] - zero))
@@ -396,7 +411,7 @@ def _curves(made: Figure, run: Trajectory, beat: Beat, instants: list[Instant], 
         values = np.degrees(q[:, run.slices[name].start])
         own.plot(x, values, color=worn[name].line, linewidth=style.CURVE, gid=f"angle {name}", zorder=3)
         style.limits(own, float(values.min()), float(values.max()))
-        own.set_ylabel(f"{name} (°)", color=worn[name].line, labelpad=1.5)
+        own.set_ylabel(f"{spaced(name)} (°)", color=worn[name].line, labelpad=1.5)
         style.ticks(own.yaxis, 4, [1, 2, 3, 5, 10])
     other.spines["right"].set_visible(True)
     other.spines["right"].set_color(FAINT)

@@ -17,6 +17,7 @@ from matplotlib.transforms import Affine2D
 
 from watchsim.escapement.couples import pose_of
 from watchsim.escapement.turn import Happening, Turn, happenings, verdict
+from watchsim.render.marks import spaced
 from watchsim.render.palette import BACKGROUND, CONTACT, FAINT, GRID, INK, LIGHT, dark, looks
 from watchsim.render.parts import Part, pose_matrix, working
 from watchsim.storage.write import write_file
@@ -113,7 +114,7 @@ def _pressed(found: Turn) -> str:
 
 
 def _short(layer: str) -> str:
-    return layer.lower().replace("_", " ")
+    return spaced(layer.lower())
 
 
 def _box(found: Turn) -> tuple[float, float, float]:
@@ -163,11 +164,9 @@ def _plot(axes: Axes, found: Turn, story: list[Happening], moments: list[int]) -
         if body.motion == "fixed" or number == led:
             continue
         pressed = number in cycle.pressed
-        line = worn[body.name].line
+        line, label = worn[body.name].line, spaced(body.name)
         values = factor[number] * ((q[:, number] - q[0, number]) * cycle.pressed.get(number, 1.0) if pressed else q[:, number])
-        words = (
-            f"{body.name}, on from where it stood ({unit[number]}), right" if pressed else f"{body.name} ({unit[number]}), left"
-        )
+        words = f"{label}, on from where it stood ({unit[number]}), right" if pressed else f"{label} ({unit[number]}), left"
         back = max(found.cycle.turned[-2] - found.first, 0) if len(found.cycle.turned) > 2 else len(q)
         side, x = right if pressed else axes, factor[led] * q[:, led]
         side.plot(x[: back + 1], values[: back + 1], color=line, linewidth=1.8, label=words)

@@ -17,6 +17,7 @@ from watchsim.analysis.wear import CELLS, TOOTH, Wear, cell_ends, wear
 from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.model import CORNER
 from watchsim.render import style
+from watchsim.render.marks import spaced
 from watchsim.render.palette import FAINT, INK
 from watchsim.simulation.trajectory import Trajectory
 from watchsim.units import metric
@@ -74,7 +75,7 @@ def _groups(found: Wear) -> dict[str, list[int]]:
     teeth = [key for key in index if key[1].startswith(TOOTH)]
     left_out = set(teeth) - {max(teeth, key=index.__getitem__)} if teeth else set()
     ranked = sorted((key for key in index if key not in left_out), key=lambda key: -index[key])
-    return {f"{body}, {place}" if body != place else body: sums[body, place] for body, place in ranked[:MOST]}
+    return {spaced(f"{body}, {place}" if body != place else body): sums[body, place] for body, place in ranked[:MOST]}
 
 
 def _along(found: Wear, compiled: Compiled, side: int) -> Array:

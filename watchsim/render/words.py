@@ -20,7 +20,7 @@ from matplotlib.patches import FancyBboxPatch
 from matplotlib.text import Text
 from matplotlib.transforms import IdentityTransform
 
-from watchsim.render.marks import Clock, clock, goes_round, reading, scale_bar, speed_text, turn_text
+from watchsim.render.marks import Clock, clock, goes_round, reading, scale_bar, spaced, speed_text, turn_text
 from watchsim.render.palette import Finish, Style, looks
 from watchsim.render.style import cut
 from watchsim.render.view import Frame, Pixels, Window, sampled
@@ -273,7 +273,9 @@ def _readings(
             seen = seen - sampled(run, run.scene.body(body.on), window)
         within = body.motion != "slide" and body.name != swinging and goes_round(seen[:, 2])
         as_text, ends = reading(body, seen, within)
-        name = _words(figure, f"{body.name} mod 360°" if within else body.name, (0.0, 0.0), small.size, style.ink)
+        name = _words(
+            figure, f"{spaced(body.name)} mod 360°" if within else spaced(body.name), (0.0, 0.0), small.size, style.ink
+        )
         taken = 1.5 * CHIP * small.size + _width(name) + 0.8 * small.size + max(small.width(text) for text in ends)
         if x > left and x + taken > limit:
             x, row = left, row + 1

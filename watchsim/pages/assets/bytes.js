@@ -17,3 +17,5 @@ const upTo = (values, x) => {
   return low;
 };
 const clamp = (x, low, high) => Math.min(Math.max(x, low), high);
+// The name of a body as a label has it.
+const spaced = (name) => name.replaceAll("_", " ");

@@ -16,8 +16,7 @@ const offerFiles = (host, data) => {
     return made;
   };
   const stem = data.title.replace(/[^\p{L}\p{N}_-]+/gu, "_").replace(/^_+|_+$/g, "").slice(0, 60) || "watch";
-  const all = button("Everything", `zip, ${sizeText(0.75 * text.length)}`, () => save(`${stem}.zip`, "application/zip", bytesOf(text)));
-  all.className = "first";
+  if (entries.length) button("Everything", `zip, ${sizeText(0.75 * text.length)}`, () => save(`${stem}.zip`, "application/zip", bytesOf(text))).className = "first";
   button("This picture", "png", () => document.getElementById("stage").toBlob((blob) => blob && save(`${stem}.png`, "image/png", blob)));
   if (typeof DecompressionStream === "undefined") return;
   for (const one of entries) {

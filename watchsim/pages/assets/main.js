@@ -78,7 +78,7 @@ const words = () => {
   for (const [id, on] of [["space", solids.on], ["label", names.on], ["adapt", player.adaptive], ["touch", player.points], ["push", player.arrows], ["tick", sound.on]]) $(id).setAttribute("aria-pressed", String(on));
   const followed = player.chosen >= 0 && view.anchor !== null;
   $("release").hidden = !followed;
-  if (followed) $("release").textContent = `Following ${data.bodies[player.chosen].name} ✕`;
+  if (followed) $("release").textContent = `Following ${spaced(data.bodies[player.chosen].name)} ✕`;
   for (const chip of chips) {
     chip.button.setAttribute("aria-pressed", String(player.faded.has(chip.b)));
     chip.value.textContent = chip.read ? chip.read(player.t) : "";
@@ -90,9 +90,9 @@ const MANY = 60;
 let chips = [];
 const chipOf = (body, b) => {
   const button = document.createElement("button"), square = document.createElement("i"), value = document.createElement("small"), rows = motion.rows[b];
-  button.type = "button"; button.title = `Fade ${body.name}`;
+  button.type = "button"; button.title = `Fade ${spaced(body.name)}`;
   square.style.background = body.fill; square.style.borderColor = body.line;
-  button.append(square, body.name, value);
+  button.append(square, spaced(body.name), value);
   button.addEventListener("click", () => player.fade(b));
   $("parts").append(button);
   if (!rows) { value.remove(); return { b, button, value }; }
@@ -125,7 +125,7 @@ const open = (told) => {
   span = player.end - player.start; trackKey = shownAt = announced = "";
   $("parts").replaceChildren(); $("whose").replaceChildren();
   chips = data.bodies.slice(0, MANY).map(chipOf);
-  for (const b of curves.movers) $("whose").add(new Option(data.bodies[b].name, String(b)));
+  for (const b of curves.movers) $("whose").add(new Option(spaced(data.bodies[b].name), String(b)));
   $("space").disabled = !solids.any; $("label").disabled = !names.any; $("adapt").disabled = !clock.uneven;
   $("push").disabled = !contacts.known; $("tick").disabled = !sound.any; $("back").disabled = $("next").disabled = !data.events.length;
   readLook();

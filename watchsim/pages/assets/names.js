@@ -21,14 +21,11 @@ class Names {
     })));
   }
 
-  // Where rows are kept, lines may come to cross: the longer one is left out for as long.
+  // Where rows are kept, lines may come to cross: the name with the longer one is left out for as long.
   clear(labels) {
     const long = ({ from, at }) => Math.hypot(from[0] - at[0], from[1] - at[1]), kept = [];
-    for (const label of labels.slice().sort((a, b) => long(a) - long(b))) {
-      label.line = !kept.some((other) => crosses(label.from, label.at, other.from, other.at));
-      if (label.line) kept.push(label);
-    }
-    return labels;
+    for (const label of labels.slice().sort((a, b) => long(a) - long(b))) if (!kept.some((other) => crosses(label.from, label.at, other.from, other.at))) kept.push(label);
+    return kept;
   }
 
   // Slanted lines of a side begin at one height above the other, beyond the longest name.
@@ -57,13 +54,11 @@ class Names {
     view.plain(ctx);
     const found = this.placed(ctx, view, poses, look, kept);
     ctx.textAlign = "left"; ctx.textBaseline = "alphabetic"; ctx.lineWidth = 1;
-    for (const { text, body, at, box, edge, from, line } of found) {
+    for (const { text, body, at, box, edge, from } of found) {
       ctx.globalAlpha = look.faded.has(body) ? 0.35 : 1;
       ctx.strokeStyle = look.ink; ctx.fillStyle = look.ink;
-      if (line) {
-        ctx.beginPath(); ctx.moveTo(...edge); ctx.lineTo(...from); ctx.lineTo(...at); ctx.stroke();
-        ctx.beginPath(); ctx.arc(...at, 2.2, 0, 2 * Math.PI); ctx.fill();
-      }
+      ctx.beginPath(); ctx.moveTo(...edge); ctx.lineTo(...from); ctx.lineTo(...at); ctx.stroke();
+      ctx.beginPath(); ctx.arc(...at, 2.2, 0, 2 * Math.PI); ctx.fill();
       ctx.lineWidth = 4; ctx.lineJoin = "round"; ctx.strokeStyle = look.paper; ctx.strokeText(text, box[0], box[3] - 4); ctx.lineWidth = 1;
       ctx.fillText(text, box[0], box[3] - 4);
     }

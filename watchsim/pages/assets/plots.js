@@ -28,7 +28,7 @@ class Plots {
       const name = document.createElement("b"), read = document.createElement("span");
       head.append(name, read); box.append(head, field); box.className = "plot"; field.className = "field";
       field.setAttribute("role", "img");
-      field.setAttribute("aria-label", `${plot.title} of ${body.name} over time`);
+      field.setAttribute("aria-label", `${plot.title} of ${spaced(body.name)} over time`);
       this.host.append(box);
       const panel = { ...plot, field, name, read, fresh: false, shown: [0, 1] };
       panel.chart = new uPlot(this.options(panel), [[], ...plot.lines.map(() => [])], field);
