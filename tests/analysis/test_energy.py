@@ -20,6 +20,7 @@ from watchsim.model import (
     BEARING,
     BODY,
     BODY_PAIR,
+    COIL,
     CONTACT,
     COORDINATE,
     JOINT,
@@ -46,9 +47,9 @@ from watchsim.simulation.simulate import simulate
 def model_of(**parts: Any) -> Any:
     """`coordinates`: {field: values by coordinate}; `joints`, `tables`: lists of {field: value}; tables bring their knots."""
     none = {"bodies": BODY, "lines": LINE_SPRING, "bearings": BEARING, "primitives": PRIMITIVE, "contacts": CONTACT}
-    none |= {"laws": LAW, "pairs": BODY_PAIR, "shocks": SHOCK, "weighed": WEIGHED}
+    none |= {"laws": LAW, "pairs": BODY_PAIR, "shocks": SHOCK, "weighed": WEIGHED, "coils": COIL}
     made: dict[str, Any] = {name: records(dtype, 0) for name, dtype in none.items()} | {"near": np.zeros(0, np.int64)}
-    made["jolts"] = np.zeros((0, 6))
+    made["jolts"], made["windings"] = np.zeros((0, 6)), np.zeros((0, 4))
     made["coordinates"] = records(COORDINATE, len(parts["coordinates"]["mass"]))
     for name, values in parts["coordinates"].items():
         made["coordinates"][name] = values

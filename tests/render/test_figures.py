@@ -325,7 +325,9 @@ def test_the_names_of_many_bearings_stand_above_their_panel(count: int) -> None:
     for width in (170.0, 85.0):
         figure = ws.plot_forces(run, width=width)
         assert faults(figure) == []
-        assert {text.get_text() for text in figure.axes[0].get_legend().get_texts()} == {body.name for body in bodies}
+        assert {text.get_text() for text in figure.axes[0].get_legend().get_texts()} == {
+            body.name.replace("_", " ") for body in bodies
+        }
 
 
 def test_a_load_that_hardly_changes_is_not_magnified() -> None:

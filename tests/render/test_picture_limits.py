@@ -256,7 +256,7 @@ def test_stretches_of_phases() -> None:
 def test_where_a_movie_can_be_written(tmp_path: Path) -> None:
     (tmp_path / "folder.mp4").mkdir()
     assert check_path(str(tmp_path / "a.Mp4")) == tmp_path / "a.Mp4" and check_path(tmp_path / "b.gif") == tmp_path / "b.gif"
-    for name, error in (("a.avi", ValueError), ("no/a.mp4", FileNotFoundError), ("folder.mp4", IsADirectoryError)):
+    for name, error in (("a.avi", ValueError), ("folder.mp4", IsADirectoryError)):
         with pytest.raises(error):
             check_path(tmp_path / name)
 

@@ -99,10 +99,16 @@ def test_nothing_to_show_is_still_a_picture(tmp_path: Path) -> None:
     assert "nothing to show" in picture(empty).axes[0].get_title(loc="left")
 
 
-def test_a_folder_that_is_not_there_is_an_error_and_leaves_nothing(tmp_path: Path) -> None:
+def test_a_folder_that_is_not_there_is_made(tmp_path: Path) -> None:
+    draw_drawing(drawing(), tmp_path / "none" / "import.png")
+    assert [path.name for path in (tmp_path / "none").iterdir()] == ["import.png"]
+
+
+def test_a_folder_that_cannot_be_made_is_an_error_and_leaves_nothing(tmp_path: Path) -> None:
+    (tmp_path / "none").write_text("a file")
     with pytest.raises(OSError):
         draw_drawing(drawing(), tmp_path / "none" / "import.png")
-    assert not list(tmp_path.iterdir())
+    assert [path.name for path in tmp_path.iterdir()] == ["none"]
 
 
 def test_centres_are_marked_on_request_only() -> None:
