@@ -37,7 +37,7 @@ void main() {
 const TILT = 0.85, STEEPEST_TILT = 1.5; // radians from above: at first, at most
 // Pixels of the picture for one of the screen: at rest the first at least, with smoothed edges; moving, as many as the machine keeps up with.
 const FINENESS = [2, 1.5, 1, 0.75, 0.5];
-const SLOW = 1000 / 45, FAST = 1000 / 57, JUDGED = 12, PATIENCE = 90; // ms from frame to frame that are too many, and enough; frames of a judgement, and before a finer try
+const SLOW = 1000 / 53, FAST = 1000 / 58, JUDGED = 12, PATIENCE = 90; // ms from frame to frame that are too many, and enough; frames of a judgement, and before a finer try
 const SAMPLES = 4; // of a pixel at rest
 const linear = (colour) => [1, 3, 5].map((k) => { const c = parseInt(colour.slice(k, k + 2), 16) / 255; return c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4; });
 
@@ -50,9 +50,10 @@ class Pace {
 
   // A frame came so many ms after the one before, of which scripts took `own`: what they take no coarser picture gives back.
   frame(gap, own) {
-    this.gaps.push(gap - own > 0.5 * gap ? gap : Math.min(gap, SLOW));
+    this.gaps.push(gap - own > 0.5 * gap ? gap : Math.min(gap, 0.99 * SLOW));
     if (this.gaps.length < JUDGED) return;
-    const usual = this.gaps.sort((x, y) => x - y)[JUDGED >> 1];
+    // The mean without the longest: a screen shows every frame for a whole number of its periods, so that a median says nothing.
+    const usual = (this.gaps.reduce((sum, one) => sum + one) - Math.max(...this.gaps)) / (JUDGED - 1);
     this.gaps = [];
     if (usual > SLOW && this.rung < FINENESS.length - 1) {
       if (this.tried) this.patience *= 2;
