@@ -66,12 +66,12 @@ def _number(value: float | None) -> str:
 
 
 def _percent(value: float) -> str:
-    return f"{100.0 * value:.4g} %"
+    return f"{100.0 * value:.4g}\N{NO-BREAK SPACE}%"
 
 
 def _yields(study: ToleranceStudy) -> Markup:
-    rows = [(name, _percent(one.value), _percent(one.low), _percent(one.high), one.by) for name, one in study.shares.items()]
-    return table(("", "share", "from", "to", "by"), rows, f"{study.good} of {study.samples} samples are good")
+    rows = [(one.by, _percent(one.value), _percent(one.low), _percent(one.high)) for one in study.shares.values()]
+    return table(("yield by", "share", "from", "to"), rows, f"{study.good} of {study.samples} samples are good")
 
 
 def _spread(study: ToleranceStudy) -> Markup:
