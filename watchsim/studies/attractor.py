@@ -32,6 +32,7 @@ from watchsim.studies.section import (
 FIRST = 8  # oscillations of the run before the second search; twice as many before each of the next
 MOST, MOST_ROUGH = 3000, 400  # oscillations in all; of a run in which each other stretch is not regular
 LOOKS = 8  # swings that are looked at on the way from the run to a fixed point
+LIKE_LOOKS = 4  # the same of a scene that differs little from one that was looked at so closely
 EVEN = 0.8  # the map leads to it by shares of the way that differ by no more than that, smallest by largest
 THERE = 1e-7  # of the amplitude: so near the way is not looked at
 LONG, NO_DRIFT = 250, 0.05  # oscillations; of their spread: a longer stretch that drifts by less wanders about
@@ -50,12 +51,13 @@ class Led(NamedTuple):
     time: float
 
 
-def attractor(loop: Loop, parts: Parts, section: Section) -> Led:
-    """What a run that turns at this section goes to."""
+def attractor(loop: Loop, parts: Parts, section: Section, like: float | None = None) -> Led:
+    """What a run that turns at this section goes to; `like`: the slope of the map at the cycle of a scene like this one."""
+    looks = LOOKS if like is None else LIKE_LOOKS
     state, time, count, done, rough = copied(section.state), 0.0, FIRST, 0, 0
-    oscillate, found = _searched(loop, parts, section)
+    oscillate, found = _searched(loop, parts, section, like)
     swings = np.array([section.amplitude])
-    while isinstance(found, Lost) or not _leads_to(oscillate, section.amplitude, found):
+    while isinstance(found, Lost) or not _leads_to(oscillate, section.amplitude, found, looks):
         if done >= MOST or rough >= MOST_ROUGH or _wanders(swings):
             trouble = found.trouble if isinstance(found, Lost) and rough else UNSETTLED
             return Led(oscillate, Lost(section.amplitude, trouble, False), swings, time)
@@ -95,13 +97,13 @@ def _followed(loop: Loop, parts: Parts, side: float, state: State, count: int) -
     return side * own[own * side > 0.0], "" if regular else UNSETTLED
 
 
-def _leads_to(oscillate: ReturnMap, amplitude: float, found: Fixed) -> bool:
+def _leads_to(oscillate: ReturnMap, amplitude: float, found: Fixed, looks: int) -> bool:
     """Does the map lead every swing between that amplitude and the fixed point towards it, by like shares of the way?"""
     way = amplitude - found.amplitude
     if abs(way) <= THERE * found.amplitude:
         return True
     shares = []
-    for part in np.linspace(1.0, 0.0, LOOKS, endpoint=False) ** 2:
+    for part in np.linspace(1.0, 0.0, looks, endpoint=False) ** 2:
         got = oscillate(found.amplitude + part * way)
         if got.trouble:
             return False
@@ -109,12 +111,12 @@ def _leads_to(oscillate: ReturnMap, amplitude: float, found: Fixed) -> bool:
     return min(shares) > 0.0 and min(shares) >= EVEN * max(shares)
 
 
-def _searched(loop: Loop, parts: Parts, section: Section) -> tuple[ReturnMap, Fixed | Lost]:
+def _searched(loop: Loop, parts: Parts, section: Section, like: float | None = None) -> tuple[ReturnMap, Fixed | Lost]:
     """The fixed point; the section moves on until what stands still at it comes back to its place."""
     amplitude = section.amplitude
     for _ in range(SECTIONS):
         oscillate = ReturnMap(loop, parts, section)
-        found = fixed_point(oscillate, amplitude)
+        found = fixed_point(oscillate, amplitude, like)
         again = None if isinstance(found, Lost) else moved_on(oscillate, oscillate(found.amplitude))
         if isinstance(found, Lost) or again is None:
             break

@@ -79,6 +79,7 @@ class Question:
     """`by_shooting`: the limit cycle, else a run of `duration` s (None: the scene's). `amplitude` (rad, m): where to begin.
 
     function  the geometry of function is measured, too: of every tooth (0), or of the first so many, where they are alike
+    slope     of the return map at that amplitude, where the cycle of a scene like this one is known
     """
 
     scene: Scene
@@ -88,6 +89,7 @@ class Question:
     amplitude: float | None = None
     brief: bool = False  # one oscillation on the cycle, without errors
     function: int | None = None
+    slope: float | None = None
 
 
 def answer(question: Question, changes: Mapping[str, Value], interrupted: Callable[[], bool] = lambda: False) -> Row:
@@ -143,7 +145,9 @@ def _worst(of: Callable[..., float], values: Iterable[float]) -> float | None:
 
 
 def _by_shooting(question: Question, scene: Scene) -> Row:
-    cycle = steady(scene, tolerance=question.tolerance, amplitude=question.amplitude, brief=question.brief)
+    cycle = steady(
+        scene, tolerance=question.tolerance, amplitude=question.amplitude, brief=question.brief, slope=question.slope
+    )
     numbers = cycle.numbers()
     row: Row = {"verdict": cycle.verdict, "message": cycle.message}
     for one in OUTPUTS.values():

@@ -179,13 +179,13 @@ class Lost(NamedTuple):
     rising: bool
 
 
-def fixed_point(oscillate: Callable[[float], Return], start: float) -> Fixed | Lost:
-    """The fixed point that the orbit from `start` runs to."""
+def fixed_point(oscillate: Callable[[float], Return], start: float, slope: float | None = None) -> Fixed | Lost:
+    """The fixed point that the orbit from `start` runs to; `slope` of the map, where about that is expected."""
     first = oscillate(start)
     if first.trouble:
         return Lost(start, first.trouble, False)
     old, g_old = start, first.amplitude - start
-    here = first.amplitude
+    here = first.amplitude if slope is None else _newton(start, g_old, slope)
     below = above = bad = None  # ends of a bracket of the fixed point, and where the mechanism does not work as it should
     slope, best = 0.0, Fixed(start, g_old, 0.0)
     below, above = (start, None) if g_old > 0.0 else (None, start)
@@ -207,9 +207,7 @@ def fixed_point(oscillate: Callable[[float], Return], start: float) -> Fixed | L
         below, above = (here, above) if g > 0.0 else (below, here)
         old, g_old = here, g
         # Newton's step; within the bracket, no further than half the amplitude, and on the good side of what went wrong.
-        step = g / (1.0 - slope) if slope < 1.0 else (FARTHEST * here if g > 0.0 else -FARTHEST * here)
-        step = max(-FARTHEST * here, min(FARTHEST * here, step))
-        new = here + step
+        new = _newton(here, g, slope)
         if below is not None and above is not None and not min(below, above) < new < max(below, above):
             new = 0.5 * (below + above)
         if bad is not None and (bad - here) * (bad - new) <= 0.0:
@@ -218,6 +216,12 @@ def fixed_point(oscillate: Callable[[float], Return], start: float) -> Fixed | L
         if here < LEAST * start:
             return Lost(here, UNSETTLED, False)
     return best if abs(best.residual) <= ENOUGH * start else Lost(here, UNSETTLED, g_old > 0.0)
+
+
+def _newton(here: float, residual: float, slope: float) -> float:
+    """Newton's step, no further than half the amplitude; so far where the map would never come back."""
+    step = residual / (1.0 - slope) if slope < 1.0 else math.copysign(math.inf, residual)
+    return here + max(-FARTHEST * here, min(FARTHEST * here, step))
 
 
 # An orbit is followed without restarting it, and its turning points are compared with those 1, 2, 3, … oscillations

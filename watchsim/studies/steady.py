@@ -102,6 +102,7 @@ def steady(
     tolerance: float | None = None,
     amplitude: float | None = None,
     brief: bool = False,
+    slope: float | None = None,
     all_cycles: bool = False,
 ) -> Cycle:
     """The limit cycle that the scene's start leads to: amplitude, rate, beat error and stability, each with its error.
@@ -110,6 +111,7 @@ def steady(
     tolerance  relative error per step (default the scene's own)
     amplitude  rad (m), where the search is to begin instead of at the first turning point of the scene's own start
     brief      one oscillation on the cycle is enough: without errors, multipliers and a look at all teeth of the wheel
+    slope      with an amplitude: of the return map at the cycle of a scene that differs little from this one
     all_cycles  look at swings of all sizes for every cycle, stable or not, and say which of them each swing leads to
 
     Where there is no cycle `found` is False, and `verdict` and `message` say what there is instead. ValueError for a bad
@@ -132,7 +134,7 @@ def steady(
     ready = time.perf_counter()
     loop.warm_up()
     warm = time.perf_counter()
-    cycle = _searched(loop, Search(amplitude, brief, all_cycles))
+    cycle = _searched(loop, Search(amplitude, brief, slope, all_cycles))
     if not cycle.found and cycle.period_s is None and (refused := nothing_lets_go(scene)):
         raise refused
     wall = time.perf_counter() - begun - (warm - ready)
@@ -150,6 +152,7 @@ class Search(NamedTuple):
 
     amplitude: float | None
     brief: bool
+    slope: float | None
     all_cycles: bool
 
 
@@ -174,7 +177,7 @@ def _searched(loop: Loop, search: Search) -> Cycle:
         if begin is None:
             return Cycle(False, None, "the parts cannot stand still at that amplitude")
         section = dataclasses.replace(section, state=begin, amplitude=search.amplitude)
-    led = attractor(loop, parts, section)
+    led = attractor(loop, parts, section, None if search.amplitude is None else search.slope)
     cycle = _shot(led, search.brief, None if search.amplitude is None else section.state)
     if not search.all_cycles:
         return cycle

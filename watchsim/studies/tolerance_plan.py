@@ -150,7 +150,9 @@ def plan_of(
         other = steady(changed(bare, space.changes(np.full(len(space.draws), 0.6))), tolerance=tolerance)
         amplitude = np.radians(cycle.amplitude_deg) if cycle.found and cycle.amplitude_deg else None
         brief = cycle.found and cycle.oscillations == 1 and other.found and other.oscillations == 1
-        question = dataclasses.replace(question, amplitude=float(amplitude) if amplitude else None, brief=brief)
+        slope = cycle.multipliers[0] if brief and cycle.multipliers else None
+        amplitude = float(amplitude) if amplitude else None
+        question = dataclasses.replace(question, amplitude=amplitude, brief=brief, slope=slope)
     return dataclasses.replace(plan, question=question)
 
 
