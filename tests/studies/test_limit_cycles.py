@@ -515,7 +515,7 @@ def returning(function, good=lambda a: True):
 
 @given(st.floats(0.5, 9.0), st.floats(20.0, 1e4), st.floats(0.3, 9.0), st.none() | st.floats(-2.0, 2.0))
 def test_constant_work_per_beat(rest, quality, start, slope):
-    """E' = E e^(-4π/Q) + w in one oscillation: A* = √(w / (1 - e^(-4π/Q))), whatever slope the search is given to begin with."""
+    """E' = E e^(-4π/Q) + w in one oscillation: A* = √(w / (1 - e^(-4π/Q))), whatever slope the search begins with."""
     kept = math.exp(-2.0 * math.pi / quality)
     found = fixed_point(returning(lambda a: math.sqrt(a * a * kept + rest * rest * (1.0 - kept))), start, slope)
     assert isinstance(found, Fixed)

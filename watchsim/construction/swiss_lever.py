@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from types import MappingProxyType
 from typing import Any
 
@@ -89,6 +90,7 @@ FARTHEST = 0.45  # of the centre distance, where the jewel's flat can stand
 FINE = 1e-13  # of the jewel's distance
 
 
+@lru_cache(maxsize=4)
 def swiss(values: SwissLever) -> Swiss:
     """The numbers that the construction draws from. ValueError where there are none."""
     plain = Swiss(

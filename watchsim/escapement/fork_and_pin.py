@@ -365,8 +365,11 @@ class Safety:
     guard_clearance: float
 
 
-def safety(balance: Balance, bank: float, side: float, entry: Entry) -> Safety | None:
-    """Of the lever on the bank of that side; None where the scene declares nothing besides the fork that could stop it."""
+def safety(balance: Balance, bank: float, side: float, entry: Entry, horns_too: bool = True) -> Safety | None:
+    """Of the lever on the bank of that side; None where the scene declares nothing besides the fork that could stop it.
+
+    Without `horns_too` their freedom is not measured (nan), only that of the guard and the largest of all.
+    """
     hands = balance.hands
     far = balance.rest + math.pi
     groups = np.array(hands.model.contacts.group)[balance.parts.to_balance]
@@ -386,7 +389,7 @@ def safety(balance: Balance, bank: float, side: float, entry: Entry) -> Safety |
     guard = abs(stop.angle - bank)
     places = _outside(entry, far)
     at, worst = _peak(lambda angles: freedoms(angles, everything), places)
-    dart = freedoms(places, guarding)
+    dart = freedoms(places, guarding) if horns_too else []
     facing = [i for i, value in enumerate(dart) if value > FACES_CRESCENT * guard]
     horn = math.nan
     if facing and len(horns):

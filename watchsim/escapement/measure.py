@@ -145,7 +145,7 @@ class Function:
 def measure(scene: Scene, compiled: Compiled | None = None, few: int | None = None, fork_too: bool = True) -> Function:
     """Measure a scene; never raises for a mechanism that has no such geometry. Of teeth that are alike `few` are enough.
 
-    Without `fork_too` neither fork nor impulses are measured, only what locks and guards the lever.
+    Without `fork_too` neither fork, horns nor impulses are measured, only what locks and guards the lever.
     """
     free = ungeared(scene)
     compiled = compiled if compiled is not None and free is scene else compile_scene(free)
@@ -276,7 +276,7 @@ def _entries(scene: Scene, hands: Hands, parts: Parts, banks: tuple[float, float
 def _balance(
     scene: Scene, hands: Hands, parts: Parts, banks: tuple[float, float], beats: list[Passage]
 ) -> tuple[Fork | None, tuple[Safety, Safety] | None, tuple[Impulse, Impulse] | None]:
-    """Of no beats the safety action alone."""
+    """Of no beats the safety action alone, without the horns."""
     balance, entries = _entries(scene, hands, parts, banks)
     sides = list(zip(banks, (1.0, -1.0), entries, strict=True))
     try:
@@ -286,7 +286,7 @@ def _balance(
         ]
     except ValueError as reason:
         raise NotMeasured(str(reason)) from reason
-    guards = [safety(balance, bank, side, entry) for bank, side, entry in sides]
+    guards = [safety(balance, bank, side, entry, bool(beats)) for bank, side, entry in sides]
     return (
         made,
         None if guards[0] is None or guards[1] is None else (guards[0], guards[1]),
