@@ -10,7 +10,7 @@ from interpreter import python
 FAULTS = """
 import resource
 import numpy as np
-from watchsim.process import hold_memory
+from watchsim.memory import hold_memory
 {hold}
 for _ in range(5):
     several = [np.ones(1_000_000) for _ in range(6)]; del several

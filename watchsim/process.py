@@ -14,30 +14,23 @@ TYPE_CHECKING = False  # as in typing, whose import would leave Ctrl-C unheard f
 if TYPE_CHECKING:
     from typing import NoReturn
 
-GARBAGE = 500_000  # objects that may pile up, some 50 MB
 PROMPT = 5e-4  # s that a thread may keep Python from another: 5 ms, as usual, would hold up whoever has only little to do
-MMAP_THRESHOLD, TRIM_THRESHOLD = -3, -1  # of glibc's malloc.h
-HELD = {MMAP_THRESHOLD: 32 << 20, TRIM_THRESHOLD: 128 << 20}  # bytes
 
 
 def process() -> "NoReturn":
     """Run the command line of this process, and end it."""
     from watchsim import stopping
+    from watchsim.memory import tidy_seldom
 
     stopping.install()
     if hasattr(signal, "pthread_sigmask"):
         signal.pthread_sigmask(signal.SIG_UNBLOCK, HEARD)
     import atexit
-    import gc
     import os
     import sys
 
-    # Nearly all objects of a short run are imported modules, which stay to the end: looking for garbage among them every few
-    # hundred objects, and once more at the end, would take a sixth of its time.
-    gc.set_threshold(GARBAGE)
+    tidy_seldom()
     sys.setswitchinterval(PROMPT)
-    if sys.platform == "linux":
-        hold_memory()
     from watchsim.commands.console import lost_output, open_streams
 
     open_streams()
@@ -56,14 +49,3 @@ def process() -> "NoReturn":
         status = max(status, BAD_INPUT)
     number = stopping.last_word()
     os._exit(128 + number if number else status)
-
-
-def hold_memory() -> None:
-    """Have glibc keep what is freed for the next array; to give it back and get it again, page by page, takes a twentieth of a
-    run."""
-    import ctypes
-
-    library = ctypes.CDLL(None)
-    if hasattr(library, "mallopt"):
-        for name, size in HELD.items():
-            library.mallopt(name, size)

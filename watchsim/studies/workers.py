@@ -7,10 +7,12 @@ cluster (dask.distributed, the extra `cluster`). A journal keeps every finished 
 from __future__ import annotations
 
 import contextlib
+import functools
 import hashlib
 import itertools
 import json
 import logging
+import math
 import os
 import pickle
 import queue
@@ -26,6 +28,7 @@ from pathlib import Path
 from typing import IO, Any, NoReturn, Protocol
 
 from watchsim import stopping
+from watchsim.memory import tidy_seldom
 from watchsim.results.tables import plain
 from watchsim.scene.errors import SceneError
 from watchsim.scene.scene import Scene
@@ -215,6 +218,7 @@ def _serve(process: _Process, question: Question, waiting: deque[tuple[int, Mapp
 def work() -> None:
     """What a worker process does: points in, rows out, until the process that started it has gone."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    tidy_seldom()
     out = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what is printed does not belong among the rows
     given: queue.SimpleQueue[Any] = queue.SimpleQueue()
@@ -249,6 +253,7 @@ def _receive(given: queue.SimpleQueue[Any]) -> None:
 
 AHEAD = 3  # points handed out per worker before one is finished
 TIMEOUT = 10.0  # s to reach the scheduler
+RECOUNT = 2.0  # s between looks at how many workers there are
 PATIENCE = 60.0  # s without any worker
 GATHERED = 2.0  # s that a finished row may take to arrive, before it is asked for again
 GONE = "cancelled", "lost"  # whoever had the point, or its row, has gone
@@ -276,15 +281,18 @@ class Cluster:
     def answers(self, question: Question, points: Points, interrupted: Callable[[], bool]) -> Iterator[tuple[int, Row]]:
         if self._client.status == "closed":  # by the end of an earlier question
             self._client = self._distributed.Client(self._address, timeout=TIMEOUT, set_as_default=False)
-        waiting = list(reversed(points))
+        waiting, asked = list(reversed(points)), pickle.dumps(question)
         under_way: dict[Any, Any] = {}  # what was promised -> its point
+        threads, counted = 0, -math.inf
         try:
             while (waiting or under_way) and not interrupted():
-                room = AHEAD * self._threads(interrupted) - len(under_way)
+                if time.monotonic() - counted > RECOUNT or not under_way:
+                    threads, counted = self._threads(interrupted), time.monotonic()
+                room = AHEAD * threads - len(under_way)
                 for _ in range(min(room, len(waiting))):
                     number, changes = waiting.pop()
                     # With the question in each: what lies on a worker for all of them is lost with that worker.
-                    future = self._client.submit(_work, number, question, dict(changes), pure=False)
+                    future = self._client.submit(_work, number, asked, dict(changes), pure=False)
                     under_way[future] = number, changes
                 done = [future for future in under_way if future.done()]
                 for future in done:
@@ -329,9 +337,17 @@ class Cluster:
         return WorkersLost(f"the scheduler at {self._address} was lost and has not come back")
 
 
-def _work(number: int, question: Question, changes: dict[str, float | str]) -> tuple[int, Row]:
+def _work(number: int, asked: bytes, changes: dict[str, float | str]) -> tuple[int, Row]:
     """What a worker of the cluster does."""
-    return number, answer(question, changes)
+    return number, answer(_question(asked), changes)
+
+
+@functools.lru_cache(maxsize=2)
+def _question(asked: bytes) -> Question:
+    """The same for all its points: what was found of its scene need not be found again."""
+    tidy_seldom()
+    question: Question = pickle.loads(asked)
+    return question
 
 
 # A folder's `rows.jsonl`: first what the study is, then every finished row on a line of its own, on the disk before the next
