@@ -24,6 +24,7 @@ FOUND = [
     (1, 256, "records"),  # a balance held since before the recorded end
     (4, 4, "records"),  # held for 2 s: half periods from before
     (2, 1, "steady"),  # a contact on the line of centres as another opens
+    (4, 2, "steady"),  # the judge took its means over no whole round of the gears
     (3, 97, "records"),  # it tripped before the recorded end
 ]
 
