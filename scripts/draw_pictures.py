@@ -277,7 +277,7 @@ PLOTS = (
     Exhibit(
         "torque.png",
         "Torque on the balance",
-        "The moment of all contact forces on the balance over its angle, positive with its swing: below zero the balance unlocks, above it is driven. An area is the work of the forces; on it stands what the phase gives in all, with the impacts, the number of `phases.csv`. The table has both parts. They are worked out twice: from contact forces and jumps here, from the energy balance of each phase there.",
+        "The moment of all contact forces on the balance over its angle, positive with its swing: below zero the balance unlocks, above it is driven. An area is the work of the forces; on it stands what the phase gives in all, with the impacts, the number of `phases.csv`. The table has both parts. They are worked out twice: from contact forces and jumps here, from the energy balance of each phase there. Where nothing keeps time, as under a calendar's driven finger, the torque that keeps each driven body in its motion, with its work between impacts.",
         "watchsim plot swiss --kind torque -o torque.png",
         "",
     ),

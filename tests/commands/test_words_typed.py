@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
 from watchsim.cli import COMMANDS, CommandParser, main
+from watchsim.commands import console
 from watchsim.paths import profiles_dir
 
 ANSWERS = [  # what was typed, whose usage is shown, what is said
@@ -69,6 +73,16 @@ def test_a_sweep_speaks_in_the_unit_that_was_typed(capsys: pytest.CaptureFixture
     assert '"-10 g·mm²"' in capsys.readouterr().err
 
 
+@pytest.mark.parametrize(("typed", "said"), [("2,80 °", '"80°"'), ("0.03,1.5 rad", '"1.5 rad"')])
+def test_a_later_point_that_is_refused_speaks_so_too(
+    typed: str, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Only the first value is tried beforehand; the row of a later one says what is wrong with it."""
+    (tmp_path / "scene.toml").write_text('[scene]\ntitle = "Lever"\nschema = 1\n[design]\nof = "swiss_lever"\nlock = "1.5°"\n')
+    main(["sweep", str(tmp_path), f"design.lock={typed}", "--no-plots", "--outputs", "amplitude", "-o", str(tmp_path / "o")])
+    assert f"design.lock = {said} must be" in capsys.readouterr().out
+
+
 def test_a_folder_with_a_scene_is_told_from_results(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "scene.toml").write_text("")
     assert main(["plot", str(tmp_path)]) == 2
@@ -78,3 +92,37 @@ def test_a_folder_with_a_scene_is_told_from_results(tmp_path: Path, capsys: pyte
 @pytest.mark.parametrize("value", ["-1.5", "-30°", "- 3", "-1 s:2 s", "a=-b", "-", "--", "-.5 mm"])
 def test_values_are_no_options(value: str) -> None:
     CommandParser()._check(value)
+
+
+SENTENCE = "  verdict      not settled yet: the amplitude rises by 0.21° per second, on its way to about 279°"
+
+
+def test_a_sentence_is_broken_between_words_under_its_beginning() -> None:
+    lines = console.folded(SENTENCE, 60).split("\n")
+    assert len(lines) == 2 and max(map(len, lines)) <= 60
+    assert lines[0].startswith("  verdict      not") and lines[1].startswith(" " * 15 + "per")
+    assert " ".join(" ".join(lines).split()) == " ".join(SENTENCE.split())
+
+
+@pytest.mark.parametrize("line", ["short", "  key (°)    12.3    45.6    ticks, a row", "/a/path/" + 60 * "x"])
+def test_rows_of_tables_and_paths_are_left_whole(line: str) -> None:
+    assert console.folded(line, 40) == line
+
+
+@pytest.mark.skipif(not hasattr(os, "openpty"), reason="needs a terminal")
+def test_only_a_terminal_breaks_lines_and_never_json() -> None:
+    """In a process of its own, whose standard output is a terminal of 50 columns."""
+    said = "from watchsim.commands import console as c; c.open_streams(); w = 'word ' * 30; print(w); c.print_json({'a': w})"
+    ours, theirs = os.openpty()
+    import fcntl
+    import struct
+    import termios
+
+    fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 50, 0, 0))
+    done = subprocess.run([sys.executable, "-c", said], stdout=theirs, check=True)
+    text = os.read(ours, 10_000).decode().replace("\r\n", "\n")
+    prose, json_text = text.split("{", 1)
+    assert done.returncode == 0 and max(map(len, prose.split("\n"))) <= 50 and len(prose.split()) == 30
+    assert max(map(len, json_text.split("\n"))) > 140
+    plain = subprocess.run([sys.executable, "-c", said], capture_output=True, check=True, text=True)
+    assert len(plain.stdout.split("\n")[0]) == 150

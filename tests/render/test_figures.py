@@ -288,6 +288,25 @@ def test_a_run_without_an_escapement_has_the_plots_that_need_none() -> None:
             draw(disc)
 
 
+@pytest.mark.parametrize(("profile", "name", "way"), [("jumper", "finger", -1.0), ("geneva", "driver", 1.0)])
+def test_the_torque_of_a_drive_stands_over_its_angle(profile: str, name: str, way: float) -> None:
+    """The finger of a calendar turns clockwise: its torque is drawn with its motion, and time runs to the right."""
+    run = ws.simulate(ws.load(ws.profiles_dir() / profile), duration=2.0)
+    figure = ws.plot_torque(run)
+    assert faults(figure) == []
+    (axes,) = figure.axes
+    (curve,) = (line for line in axes.lines if line.get_gid() == f"drive {name}")
+    angle, torque = np.radians(np.asarray(curve.get_xdata())), 1e-6 * np.asarray(curve.get_ydata())
+    left, right = axes.get_xlim()
+    assert axes.get_ylabel() == "torque (µN·m)" and (right - left) * way > 0.0
+    instants = np.linspace(0.3, 0.9, 40)  # of the contacts there; the pin is driven evenly
+    there = np.interp(instants, (angle - angle[0]) / (angle[-1] - angle[0]) * 2.0, torque)
+    assert there == pytest.approx(-way * torque_on(run, name, instants), abs=1e-3 * torque.max())
+    if profile == "geneva":  # blows on the pin of a finger do work, too; here they do hardly any
+        work = float(np.sum(0.5 * (torque[1:] + torque[:-1]) * np.diff(angle)))
+        assert work == pytest.approx(energy_shares(run).supplied, rel=1e-3)
+
+
 def test_bearings_of_geared_bodies_say_what_is_left_out() -> None:
     profiles = ws.profiles_dir()
     tourbillon = ws.load(profiles / "tourbillon")

@@ -233,6 +233,7 @@ def test_what_goes_far_is_followed():
     ("place", "said"),
     [
         ("levr", "bodies with a drawing"),
+        ("entyr stone", 'did you mean "entry stone"'),
         ("lever.NONE", "layers of lever"),
         ("lever.NONE.1", "layers of lever"),
         ("1,2:3", "two corners"),

@@ -158,7 +158,9 @@ def with_error(value: float, error: float | None, unit: str) -> tuple[str, str |
         return f"{signed(value, 3)}{unit}", None
     finest = FINEST.get(unit, EXACT)
     decimals = min(max(decimals_for(error), 0 if abs(value) >= 100.0 else 1), finest) if error > 0.0 else 3
-    shown = f"± {error:.{decimals}f}" if error >= 0.5 * 10.0**-decimals else f"below {10.0**-decimals:.{decimals}f}"
+    shown = (
+        f"scatter {error:.{decimals}f}" if error >= 0.5 * 10.0**-decimals else f"scatter below {10.0**-decimals:.{decimals}f}"
+    )
     return f"{signed(value, decimals)}{unit}", f"{shown}{unit}"
 
 

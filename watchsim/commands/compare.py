@@ -14,7 +14,10 @@ if TYPE_CHECKING:
 
 
 HELP = "what was changed between scenes or runs, and what came of it"
-NOTE = "± is the error of the difference: of limit cycles that of the computation, of runs how much their beats scatter."
+NOTES = {
+    "±": "± is the error of the difference, that of the computation.",
+    "scatter": "scatter: how much the beats of the runs scatter and drift; the error of the computation is another matter.",
+}
 
 
 def options(parser: argparse.ArgumentParser) -> None:
@@ -84,10 +87,10 @@ def text(found: Comparison) -> str:
     changed = [[*row, ""] for row in changed_rows(found)]
     lines = aligned(["changed", *names, ""], changed) if changed else ["  Nothing was changed in the scene."]
     body = [[*row, ""] for row in result_rows(found)]
-    lines += ["", *aligned(["result", *names, "difference", "±", ""], body)]
+    lines += ["", *aligned(["result", *names, "difference", found.off, ""], body)]
     lines += [f"  {side.name}: {side.message}" for side in found.sides if side.message]
     if any(one.error is not None for one in found.outputs.values()):
-        lines.append(f"  {NOTE}")
+        lines.append(f"  {NOTES[found.off]}")
     return "\n".join(lines)
 
 

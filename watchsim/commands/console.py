@@ -15,10 +15,11 @@ import re
 import shlex
 import sys
 import tempfile
+import textwrap
 import time
 import traceback
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TextIO
 
 if TYPE_CHECKING:
     from watchsim.units import Dimension
@@ -62,10 +63,41 @@ UNSEEN = re.compile(
 
 
 class _Escaped(io.TextIOWrapper):
-    """Text whose characters all are seen."""
+    """Text whose characters all are seen, and whose sentences are broken between words where a terminal is narrower."""
 
     def write(self, text: str) -> int:
-        return super().write(UNSEEN.sub(lambda one: f"\\u{ord(one[0]):04x}", text))
+        shown = UNSEEN.sub(lambda one: f"\\u{ord(one[0]):04x}", text)
+        wide = columns(self)
+        if wide < LEAST_COLUMNS or "\r" in text or text[:1] in ("{", "["):  # no terminal, progress, JSON
+            return super().write(shown)
+        return super().write("\n".join(folded(line, wide) for line in shown.split("\n")))
+
+
+LEAST_COLUMNS = 40  # of a terminal in which lines are broken
+LABEL = re.compile(r"\s*(?:\S+(?: \S+)* {2,})?")  # what stands left of a sentence: blanks, or a label and blanks
+
+
+def columns(stream: TextIO) -> int:
+    """How many characters a line of the terminal behind a stream takes; 0 where there is none."""
+    try:
+        return os.get_terminal_size(stream.fileno()).columns
+    except (OSError, ValueError, AttributeError):
+        return 0
+
+
+def folded(line: str, wide: int) -> str:
+    """A line broken between words at that many characters, its rest under its beginning; the rows of tables are left whole."""
+    if len(line) <= wide:
+        return line
+    head = LABEL.match(line)
+    label = head[0] if head and len(head[0]) <= wide // 2 else ""
+    if "  " in line[len(label) :]:
+        return line
+    under = " " * len(label)
+    return textwrap.fill(line[len(label) :], wide, initial_indent=label, subsequent_indent=under, **WHOLE_WORDS)
+
+
+WHOLE_WORDS: dict[str, Any] = {"break_long_words": False, "break_on_hyphens": False}  # paths and keys can be copied
 
 
 def lost_output() -> str:
@@ -123,12 +155,13 @@ class Progress:
         self._shown = 0.0
         self._first: tuple[float, float] | None = None
         self._quiet = not sys.stderr.isatty()
+        self._wide = min((columns(sys.stderr) or 80) - 1, 79)
         self._crowd = ""
 
     def crowded(self, words: str) -> None:
         """Say on a line of its own why it crawls, once each time that it begins to."""
         if words and not self._crowd and not self._quiet:
-            self._show(f"\r{words:<79}\n")
+            self._show(f"\r{words:<{self._wide}}\n")
         self._crowd = words
 
     def __call__(self, done: float, whole: float) -> None:
@@ -143,11 +176,11 @@ class Progress:
             words += f", {_clock((now - begun) * (whole - done) / (done - first))} left"
         if whole == math.inf:  # nobody knows how many there will be
             words = f"\r{self._words}  {done:.4g}   {_clock(elapsed)} elapsed"
-        self._show(f"{words:<79}")
+        self._show(f"{words[: self._wide + 1]:<{self._wide + 1}}")
 
     def close(self) -> None:
         if not self._quiet and self._shown:
-            self._show("\r" + " " * 79 + "\r")
+            self._show("\r" + " " * self._wide + "\r")
 
     def _show(self, words: str) -> None:
         try:

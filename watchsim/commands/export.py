@@ -31,7 +31,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("-o", "--output", metavar="DIR", help="folder for the files (default export/NAME)")
     parser.add_argument("--format", metavar="NAMES", default=",".join(FORMATS), help="default %(default)s")
-    parser.add_argument("--bodies", metavar="NAMES", help="only these bodies, separated by commas")
+    parser.add_argument("--bodies", metavar="NAMES", help="only these bodies, separated by commas, or all (the default)")
     parser.add_argument(
         "--thickness",
         metavar="LENGTH",
@@ -119,6 +119,8 @@ def _chosen(scene: Scene, names: list[str] | None) -> tuple[Body, ...]:
     from watchsim.scene.keys import nearest
 
     known = [body.name for body in scene.bodies]
+    if names == ["all"] and "all" not in known:
+        names = None
     for name in names or ():
         if name not in known:
             raise InputError(f'--bodies: the scene has no body "{name}". {nearest(name, known)}')

@@ -34,7 +34,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--contacts", action="store_true", help="mark the contacts that are closed")
     parser.add_argument("--forces", action="store_true", help="arrows for the forces at contacts, and their scale")
     parser.add_argument("--names", action="store_true", help="names on the parts: entry stone, guard pin, roller jewel, ...")
-    parser.add_argument("--phases", action="store_true", help="name the phases of a beat")
+    parser.add_argument("--phases", action="store_true", help="show the phases of a beat by name, and shaded in the strip")
     parser.add_argument(
         "--strip",
         metavar="BODY",

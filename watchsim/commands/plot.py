@@ -22,8 +22,9 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--kind",
         metavar="NAMES",
-        help="kinematics (default), phases, timeline (the mechanism in each phase), phase-portrait, torque (on the balance), "
-        "forces (at contacts and bearings), energy, sound (of a beat), timing, tape, wear (along outlines), with commas; "
+        help="kinematics (default), phases, timeline (the mechanism in each phase), phase-portrait, torque (on the balance, "
+        "or of a drive), forces (at contacts and bearings), energy, sound (of a beat), timing, tape, wear (along outlines), "
+        "with commas;"
         f" {ALL}: every one that the run has",
     )
     parser.add_argument(
@@ -42,7 +43,9 @@ def options(parser: argparse.ArgumentParser) -> None:
         "--window", metavar="FROM:TO", help='such as "179.4 s:179.75 s" (default: the last beats, or the whole)'
     )
     parser.add_argument(
-        "--phases", action="store_true", help="as --kind phases, and tables of motion and energy on the standard output"
+        "--phases",
+        action="store_true",
+        help="show the phases of a beat: the same as --kind phases, with tables of motion and energy on the standard output",
     )
     parser.add_argument(
         "--width", metavar="LENGTH", default="170 mm", help='printed width (default "%(default)s", or "85 mm" for a column)'

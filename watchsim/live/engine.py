@@ -276,7 +276,7 @@ def _compared(reference: Side | None, side: Side) -> dict[str, Any]:
     if any(key.startswith(design) for key, *_ in changed):  # the drawings follow from its dimensions
         changed = [row for row in changed if not row[0].endswith(".drawing")]
     results = result_rows(found, SHOWN)
-    return {"first": reference is None, "changed": changed, "results": results, "message": side.message}
+    return {"first": reference is None, "changed": changed, "results": results, "off": found.off, "message": side.message}
 
 
 def _motion(run: Trajectory) -> dict[str, Any]:

@@ -27,8 +27,8 @@ def comparison_page(found: Comparison, path: str | Path) -> Path:
     window = (data["window"][0], data["window"][1])
     data["ghost"] = _outlines(first.scene, picture_size(last, window))
     changed = table(("", *names), changed_rows(found), "keys of the scene that differ", numeric=False)
-    words = f"difference: {names[-1]} less {names[0]}; ±: its error"
-    results = table(("", *names, "difference", "±"), result_rows(found), words)
+    words = f"difference: {names[-1]} less {names[0]}; {'±: its error' if found.off == '±' else 'scatter: of the beats'}"
+    results = table(("", *names, "difference", found.off), result_rows(found), words)
     places["sheet"] = joined((section("changed", "What was changed", changed), section("results", "What came of it", results)))
     places["lead"] = f"{names[-1]} in motion; dashed: where {names[0]} was drawn otherwise (G hides it)"
     text = page(last.scene.title, places, data)

@@ -146,8 +146,8 @@ def phase_tables(phases: Iterable[Phase]) -> Iterator[Markup]:
         shown = [k for k, head in enumerate(HEAD_PHASE_TABLES) if not (anchor and head.startswith("lever"))]
         rows = [[kind.row()[k] for k in shown] for kind in kinds]
         heads = [HEAD_PHASE_TABLES[k] for k in shown]
-        caption = f"{title.capitalize()}: means of {count} beats" if count > 1 else f"{title.capitalize()}: one"
-        parts += [strip(lengths, "ms", words), table(heads, rows, caption)]
+        what = f"means of {count} beats, in brackets their scatter" if count > 1 else "one"
+        parts += [strip(lengths, "ms", words), table(heads, rows, f"{title.capitalize()}: {what}")]
     if parts:
         yield section("phases", "Phases of a beat", *parts)
 
@@ -166,7 +166,7 @@ def _mean(values: Array) -> str:
     """With as many decimals as the scatter justifies, two to four."""
     spread = float(np.std(values))
     decimals = max(2, min(decimals_for(spread), 4)) if spread > 0.0 else 4
-    scatter = f" ± {spread:.{decimals}f}" if spread >= 0.5 * 10.0**-decimals else ""
+    scatter = f" ({spread:.{decimals}f})" if spread >= 0.5 * 10.0**-decimals else ""
     return f"{signed(float(np.mean(values)), decimals)}{scatter}"
 
 
@@ -178,7 +178,7 @@ def timekeeping(run: Trajectory, numbers: Mapping[str, Any]) -> Iterator[Markup]
     note = None
     if numbers.get("window_s"):
         start, end = numbers["window_s"]
-        words = f"Means over {start:.4g} s to {end:.4g} s. ± is how much the beats of that time scatter and drift"
+        words = f"Means over {start:.4g} s to {end:.4g} s. Scatter: how much the beats of that time scatter and drift"
         note = element("p", f"{words}{_computed(numbers)}.", class_="note")
     message = numbers.get("timing_message")
     yield section(

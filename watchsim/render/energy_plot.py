@@ -26,7 +26,8 @@ from watchsim.render import style
 from watchsim.render.marks import spaced
 from watchsim.render.palette import ENERGIES, FAINT, INK
 from watchsim.render.phase_plots import bands, beat_name
-from watchsim.scene.roles import roles
+from watchsim.render.view import recorded
+from watchsim.scene.roles import is_driven, keeps_time, roles
 from watchsim.simulation.trajectory import Array, Trajectory, frames
 from watchsim.units import metric, signed
 
@@ -256,9 +257,17 @@ def plot_torque(
     """The torque of all contacts on the balance over its angle, a panel for each of the last two beats of a window.
 
     Positive with the swing, whichever way it goes. The area under a phase is the work of its forces; written on it is what the
-    phase gives to the balance in all, impacts included, as in phases.csv. ValueError where no beat was recorded whole, or the
-    run knows no forces.
+    phase gives to the balance in all, impacts included, as in phases.csv.
+
+    Where nothing keeps time it is the torque, or force, that keeps each driven body in its motion, over its angle or path in
+    the window, by default the last stretch recorded, with its work.
+
+    ValueError where no beat was recorded whole, or the run knows no forces.
     """
+    if beats is None and not (keeps_time(run.scene) and is_driven(run.scene)):
+        names = [body.name for body in run.scene.bodies if body.prescribed is not None]
+        if names:
+            return _drives(run, names, window, width, ax)
     beats_shown = (beats or shown_beats(run, window, rubbed=False))[-MANY:]
     found = pushes(run, beats_shown)
     across = len(found) if width >= style.NARROW else 1
@@ -283,6 +292,37 @@ def plot_torque(
         axes.set_ylabel(f"torque ({unit})", labelpad=1.5)
         _energies(axes, push, factor, joules)
         _table(axes, push, (f"energy to {name} ({joules[1]})", joules[0]), (TALL + TORQUE_UNDER) / TALL, LINE / TALL)
+    return made
+
+
+def _drives(run: Trajectory, names: list[str], window: Sequence[float] | None, width: float, ax: Axes | None) -> Figure:
+    """A panel for each driven body: the torque of its drive, or the force along its axis, positive with the motion."""
+    start, end = recorded(run)[-1] if window is None else style.stretch(run, window)
+    times = _instants(run, start, end)
+    pushed, step = forces(run, times).drives, TORQUE_OVER + TALL + TORQUE_UNDER
+    across = min(len(names), 2) if width >= style.NARROW else 1
+    made = style.figure(width, TORQUE_TOP + -(-len(names) // across) * step, ax=ax)
+    style.heading(made, run.scene.title, f"Drive between impacts, with its motion, {start:.6g} s to {end:.6g} s")
+    sides = (TORQUE_LEFT, TORQUE_RIGHT)
+    panels = style.panels(made, width, [TALL] * len(names), across, sides, TORQUE_TOP + TORQUE_OVER, step)
+    for axes, name in zip(panels, names, strict=True):
+        slides = run.scene.body(name).motion == "slide"
+        moved, way = run.positions(times, [run.slices[name].start])[:, 0], 1.0
+        steps = np.diff(moved)
+        if np.all(steps <= 0.0) and np.any(steps):  # elsewhere a motion to and fro has a side for either way
+            way = -1.0
+            axes.xaxis.set_inverted(True)
+        drive = way * pushed[name]
+        factor, unit = style.scaled_unit(float(np.abs(drive).max()) or 1.0, "N" if slides else "N·m")
+        work = float(np.sum(0.5 * (drive[1:] + drive[:-1]) * way * steps))
+        style.dress(axes)
+        axes.axhline(0.0, color=FAINT, linewidth=style.HAIR, zorder=2)
+        axes.plot(
+            1e3 * moved if slides else np.degrees(moved), factor * drive, color=INK, linewidth=style.CURVE, gid=f"drive {name}"
+        )
+        style.title(axes, f"{name}, work {style.minus(metric(work, 'J', 4))}")
+        axes.set_xlabel(f"position of {name} (mm)" if slides else f"angle of {name} (°)", labelpad=1.5)
+        axes.set_ylabel(f"{'force' if slides else 'torque'} ({unit})", labelpad=1.5)
     return made
 
 

@@ -27,6 +27,7 @@ from watchsim.render.parts import LastingPatch, Part, loops_of, outline, parts, 
 from watchsim.render.patches import CoilPatches
 from watchsim.render.view import COARSE, Frame, Pixels, View, Window, choose, dense, fitted, placed, seen, swept
 from watchsim.render.words import Words
+from watchsim.scene.keys import closest
 from watchsim.scene.roles import roles
 from watchsim.scene.scene import Body, Scene
 from watchsim.simulation.trajectory import Array, Trajectory
@@ -131,7 +132,8 @@ def _outlines(run: Trajectory, place: str, stones: PalletStones) -> tuple[Body, 
     name, _, rest = place.partition(".")
     drawn = {body.name: body for body in run.scene.bodies if loops_of(body)}
     if name not in drawn:
-        raise ValueError(f'inset "{place}": bodies with a drawing are {", ".join(drawn)}')
+        near = f'; did you mean "{meant}"?' if (meant := closest(place, [*drawn, *STONES])) else ""
+        raise ValueError(f'inset "{place}": bodies with a drawing are {", ".join(drawn)}{near}')
     body = drawn[name]
     loops = loops_of(body)
     if not rest:

@@ -7,6 +7,7 @@ map. Points without a number are marked where they lie, with what happens there.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -36,6 +37,7 @@ def plot_sweep(sweep: Sweep, width: float = style.FULL, ax: Axes | None = None) 
 
     ValueError where nothing can be drawn: more than two keys, or keys without numbers.
     """
+    sweep = _weak_to_strong(sweep)
     numeric = [axis for axis in sweep.axes if axis.is_numeric]
     if not numeric or len(sweep.axes) > 2:
         raise ValueError("only sweeps over one or two keys with numbers can be drawn")
@@ -145,6 +147,17 @@ def axis_label(axis: Axis) -> str:
 def usual_value(axis: Axis, value: Any) -> Any:
     """A value of a key in the unit in which people read it."""
     return to(value, axis.usual) if axis.usual and not isinstance(value, str) else value
+
+
+def _weak_to_strong(sweep: Sweep) -> Sweep:
+    """A drive that turns clockwise is negative in the scene; its curves run over the magnitude."""
+    for axis in sweep.axes:
+        values = [abs(value) for value in axis.values if not isinstance(value, str) and value <= 0.0]
+        if axis.key.startswith("torques.") and axis.key.endswith(".value") and len(values) == len(axis.values):
+            key = f"{axis.key}.magnitude"
+            axes = tuple(replace(one, key=key, values=tuple(values)) if one is axis else one for one in sweep.axes)
+            sweep = replace(sweep, axes=axes, rows=tuple({**row, key: abs(row[axis.key])} for row in sweep.rows))
+    return sweep
 
 
 def _curves(axes: Axes, sweep: Sweep, along: Axis, other: Axis | None, output: Output) -> None:

@@ -83,7 +83,7 @@ def _histogram(axes: Axes, study: ToleranceStudy, samples: Samples, output: Outp
         bell = np.exp(-0.5 * ((x - one.nominal) / one.linear_sigma) ** 2) / (one.linear_sigma * np.sqrt(2.0 * np.pi))
         axes.plot(x, bell * len(values) * (edges[1] - edges[0]), color=FAINT, linewidth=style.THIN, linestyle="--")
     cpk = "" if one.cpk is None else f", Cpk {one.cpk:.2f}"
-    axes.set_title(style.minus(f"{one.mean:.4g} ± {one.sigma:.2g}{cpk}"), loc="right", fontsize=style.SMALL, color=FAINT)
+    axes.set_title(style.minus(f"mean {one.mean:.4g}, σ {one.sigma:.2g}{cpk}"), loc="right", fontsize=style.SMALL, color=FAINT)
     axes.set_xlabel(output_label(output))
     axes.set_yticks([])
     style.dress(axes, grid="none")

@@ -16,7 +16,7 @@ from watchsim.scene.assign import dimension_of, full_key
 from watchsim.scene.errors import Fault, SceneError
 from watchsim.scene.keys import words_of
 from watchsim.scene.scene import Scene
-from watchsim.units import NUMBER, Dimension, UnitError, parse, split, to
+from watchsim.units import NUMBER, Dimension, UnitError, parse, show, split
 
 MOST = 100_000  # points of a sweep
 
@@ -38,14 +38,13 @@ class Axis:
         return f"{self.key}_{slug(self.si)}" if self.si else self.key
 
     @property
-    def first(self) -> Value:
-        """The first value as it was typed, so that what is said of it is said in its unit."""
-        value = self.values[0]
-        return value if isinstance(value, str) or not self.usual else f"{to(value, self.usual):.12g} {self.usual}"
-
-    @property
     def is_numeric(self) -> bool:
         return all(not isinstance(value, str) for value in self.values)
+
+
+def as_typed(value: Value, unit: str) -> Value:
+    """The value in the unit that it was typed in, so that what is said of it is said in that unit."""
+    return value if isinstance(value, str) or not unit else show(value, unit, 12)
 
 
 PLACES = ("x", "y")
@@ -104,7 +103,7 @@ def checked(scene: Scene, axes: Sequence[Axis], found: Sequence[Fault] = ()) -> 
             faults.append(Fault(axis.key, "is given twice; name each key once", place="sweep"))
             continue
         try:
-            scene.set(axis.key, axis.first)
+            scene.set(axis.key, as_typed(axis.values[0], axis.usual))
         except SceneError as error:
             faults += (replace(fault, place="sweep") for fault in error.faults)
     points = int(np.prod([len(axis.values) for axis in axes], dtype=float)) if axes else 0

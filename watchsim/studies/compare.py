@@ -40,7 +40,8 @@ class Side:
     """One of those that are compared.
 
     outputs  name with unit -> value and error: for a limit cycle that of the computation, for a run the scatter of its beats
-    run      None for a scene that its limit cycle answers for
+    run      None for a scene that its limit cycle answers for, unless it was simulated only to be drawn
+    cycle    its limit cycle answers for it
     """
 
     name: str
@@ -49,6 +50,7 @@ class Side:
     verdict: str | None
     message: str
     run: Trajectory | None
+    cycle: bool = False
 
 
 @dataclass(frozen=True)
@@ -85,6 +87,11 @@ class Comparison:
     sides: tuple[Side, ...]
     changed: Mapping[str, tuple[Any, ...]]
     outputs: Mapping[str, Outcome]
+
+    @property
+    def off(self) -> str:
+        """What the error of a difference is: that of the computation (±), or for runs how much their beats scatter."""
+        return "±" if self.sides[0].cycle and self.sides[-1].cycle else "scatter"
 
     def numbers(self) -> dict[str, Any]:
         """As `watchsim compare --json` prints it."""
@@ -142,7 +149,7 @@ def _of_scene(scene: Scene, name: str) -> Side:
     cycle = steady(scene)
     found = {**cycle.numbers(), "multiplier_error": max(cycle.multipliers_error, default=None)}
     found["multiplier"] = max(cycle.multipliers, key=abs, default=None)
-    return Side(name, scene, _numbers(found, (*TIMED, "multiplier")), cycle.verdict, cycle.message, None)
+    return Side(name, scene, _numbers(found, (*TIMED, "multiplier")), cycle.verdict, cycle.message, None, cycle=True)
 
 
 def _of_run(run: Trajectory, name: str, numbers: dict[str, Any] | None) -> Side:

@@ -10,7 +10,7 @@ import difflib
 import math
 import time
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from watchsim.analysis.timing import mean_over
@@ -26,7 +26,7 @@ from watchsim.simulation.options import options_of
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.state import Stop
 from watchsim.studies.all_cycles import judged
-from watchsim.studies.axes import Value
+from watchsim.studies.axes import Value, as_typed
 from watchsim.studies.section import freed_start
 from watchsim.studies.steady import steady
 
@@ -80,6 +80,7 @@ class Question:
 
     function  the geometry of function is measured, too: of every tooth (0), or of the first so many, where they are alike
     slope     of the return map at that amplitude, where the cycle of a scene like this one is known
+    units     key -> the unit that its values were typed in, for what is said of them
     """
 
     scene: Scene
@@ -90,6 +91,7 @@ class Question:
     brief: bool = False  # one oscillation on the cycle, without errors
     function: int | None = None
     slope: float | None = None
+    units: Mapping[str, str] = field(default_factory=dict)
 
 
 def answer(question: Question, changes: Mapping[str, Value], interrupted: Callable[[], bool] = lambda: False) -> Row:
@@ -111,11 +113,20 @@ def answer(question: Question, changes: Mapping[str, Value], interrupted: Callab
         if row["verdict"] is not None:
             row["message"] = row["message"] or unmeasured
     except SceneError as error:
-        row["message"] = " ".join(str(error).split())
+        row["message"] = " ".join(str(_in_typed_units(question, changes, error)).split())
     seconds = row.setdefault("seconds", {})
     seconds["cells"] = row.pop("cells_s", 0.0)
     seconds["motion"] = time.perf_counter() - begun - sum(seconds.values())
     return row
+
+
+def _in_typed_units(question: Question, changes: Mapping[str, Value], error: SceneError) -> SceneError:
+    """What is wrong with the point, with its values as they were typed."""
+    try:
+        changed(question.scene, {key: as_typed(value, question.units.get(key, "")) for key, value in changes.items()})
+    except SceneError as again:
+        return again
+    return error
 
 
 def function_of(scene: Scene, few: int | None = None) -> Row:

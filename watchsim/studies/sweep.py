@@ -6,7 +6,7 @@ import itertools
 import os
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -130,6 +130,7 @@ def swept(
     points = [dict(zip((axis.key for axis in axes), values, strict=True)) for values in _grid(axes)]
     if not axes:
         raise ValueError("a sweep needs at least one key with its values")
+    question = replace(question, units={axis.key: axis.usual for axis in axes})
     rows = _rows(question, axes, points, executor, folder, resume, progress)
     columns = [name for one in outputs for name in ((one.column, f"{one.column}_error") if one.has_error else (one.column,))]
     outcomes = tuple(

@@ -92,7 +92,7 @@ const showOutcome = (received) => {
   };
   const results = received.first ? received.results.map(([name, , value]) => [name, value]) : received.results;
   const parts = received.changed.length ? [tableOf("In the scene", ["changed", "before", "now"], received.changed)] : [];
-  parts.push(tableOf("Result", received.first ? ["result", "now"] : ["result", "before", "now", "difference", "±"], results));
+  parts.push(tableOf("Result", received.first ? ["result", "now"] : ["result", "before", "now", "difference", received.off], results));
   if (received.message) parts.push(tag("p", received.message));
   $("outcome").replaceChildren(...parts);
 };
