@@ -14,8 +14,13 @@ NAMES = ("chromium", "chromium-browser", "google-chrome")
 
 
 @contextmanager
-def opened(path: Path | str, width: int = 1280, height: int = 900, scheme: str = "light", ratio: float = 1.0) -> Iterator[Any]:
-    """A file or address in a window; its `said` collects messages and exceptions, its `asked` the addresses it opens."""
+def opened(
+    path: Path | str, width: int = 1280, height: int = 900, scheme: str = "light", ratio: float = 1.0, script: bool = True
+) -> Iterator[Any]:
+    """A file or address in a window; its `said` collects messages and exceptions, its `asked` the addresses it opens.
+
+    `script`: it is a page with a player.
+    """
     driver = pytest.importorskip("playwright.sync_api", reason="playwright is not installed: pip install 'watchsim[browser]'")
     program = next(filter(None, map(shutil.which, NAMES)), None)
     if program is None:
@@ -32,7 +37,7 @@ def opened(path: Path | str, width: int = 1280, height: int = 900, scheme: str =
         page.on("pageerror", lambda error: said.append(str(error)))
         page.on("request", lambda request: asked.append(request.url))
         page.goto(path if isinstance(path, str) else path.absolute().as_uri())
-        assert page.evaluate("window.watchsim !== undefined"), said
+        assert page.evaluate("window.watchsim !== undefined") == script, said
         page.said, page.asked = said, asked
         try:
             yield page

@@ -24,9 +24,11 @@ from watchsim.analysis.sound import BLOW
 from watchsim.geometry.loops import polyline
 from watchsim.pages.compare_page import comparison_page
 from watchsim.pages.report_page import page_text, report
+from watchsim.pages.tolerance_page import tolerance_page
 from watchsim.paths import profiles_dir
 from watchsim.render.movie import frame
 from watchsim.render.palette import BLUED, BRASS, FIXED, NIGHT, RUBY, STEEL
+from watchsim.render.part_names import part_names
 from watchsim.render.parts import loops_of
 from watchsim.render.stage import Stage
 from watchsim.render.view import hairsprings, poses, zigzags
@@ -36,6 +38,7 @@ from watchsim.simulation.simulate import simulate
 from watchsim.simulation.state import EventKind
 from watchsim.simulation.trajectory import Trajectory
 from watchsim.studies.compare import compare, side_of
+from watchsim.studies.tolerance import tolerance
 
 pytestmark = pytest.mark.slow
 SIZE = (1280, 720)
@@ -461,6 +464,70 @@ def test_names_stand_apart_and_on_their_parts(profile: str, tmp_path: Path) -> N
         assert page.said == []
 
 
+def test_a_printed_clock_has_the_whole_in_an_inset_with_its_bob_where_the_run_has_it(tmp_path: Path) -> None:
+    run = simulate(load(Path(str(profiles_dir())) / "graham" / "scene.toml"), duration=1.2, record="all")
+    bob, radius = np.array((0.0, -248.5)), 30.0  # mm, in the pendulum's drawing
+    whole = """(() => { const small = document.querySelector('#poster use').getScreenCTM();
+      const m = small.multiply(document.getElementById('drawn').transform.baseVal[0].matrix);
+      return [[m.a, m.c, m.e], [m.b, m.d, m.f]]; })()"""
+    with opened(report(run, tmp_path / "page.html"), scheme="dark", ratio=3.0) as page:
+        page.emulate_media(media="print", color_scheme="dark")
+        shots = []
+        for t in (0.6, 1.1):
+            page.evaluate("t => { watchsim.seek(t); window.dispatchEvent(new Event('beforeprint')); }", t)
+            page.wait_for_timeout(100)
+            shots.append(iio.imread(page.screenshot())[..., :3].astype(int))
+            x, y, angle = poses(run, np.array([t]))["pendulum"][0]
+            c, s = np.cos(angle), np.sin(angle)
+
+            def pixel(right: float, up: float) -> Any:
+                home = bob + np.array((right, up))
+                there = 1e3 * np.array((x, y)) + np.array([[c, -s], [s, c]]) @ home  # noqa: B023
+                column, row = np.round(3.0 * np.array(page.evaluate(whole)) @ (*there, 1.0)).astype(int)
+                return shots[-1][row, column]
+
+            inside = [pixel(0.8 * radius * i, 0.8 * radius * j) for i, j in ((1, 0), (-1, 0), (0, -1))]
+            assert np.ptp(inside, axis=0).max() < 10 and inside[0].min() < 225, "one colour, and no paper"
+            for right, up in ((1.2, 0.0), (-1.2, 0.0), (0.0, -1.1)):
+                assert pixel(right * radius, up * radius).min() > 245, "paper all round"
+        assert (shots[0] != shots[1]).any()
+        assert page.said == []
+
+
+DRAWN = """places => new Promise((done) => requestAnimationFrame(() => {
+  const said = [], write = CanvasRenderingContext2D.prototype.fillText;
+  CanvasRenderingContext2D.prototype.fillText = function (text, ...at) { said.push(text); write.call(this, text, ...at); };
+  requestAnimationFrame(() => {
+    CanvasRenderingContext2D.prototype.fillText = write;
+    done({ said, at: places.map(([body, point]) => watchsim.seen(body, [point])[0]) });
+  });
+}))"""  # the texts of one frame of the player, and where places of bodies are seen in it
+
+
+def test_while_it_plays_a_name_is_hidden_for_as_long_as_its_part_is_out_of_sight(tmp_path: Path) -> None:
+    run = simulate(load(Path(str(profiles_dir())) / "coaxial" / "scene.toml"), duration=1.2, record="all")
+    names = [one for one in part_names(run.scene) if one.body is not None]
+    with opened(report(run, tmp_path / "page.html")) as page:
+        page.focus("#stage")
+        page.keyboard.press("l")
+        page.keyboard.press("a")
+        for key in "++++++++++>>>>>>>>":
+            page.keyboard.press(key)
+        page.keyboard.press("Space")
+        box = page.locator("#stage").bounding_box()
+        shown, hidden, changes = set(), set(), set()
+        for _ in range(60):
+            page.wait_for_timeout(40)
+            found = page.evaluate(DRAWN, [[one.body, list(one.point)] for one in names])
+            within = [0 < x < box["width"] and 0 < y < box["height"] for x, y in found["at"]]
+            inside = {one.text for one, there in zip(names, within, strict=True) if there}
+            texts = {one.text for one in names} & set(found["said"])
+            assert texts <= inside, texts - inside
+            shown, hidden, changes = shown | texts, hidden | {one.text for one in names} - inside, changes | {frozenset(texts)}
+        assert shown & hidden and len(changes) > 1, "a name comes and goes"
+        assert page.said == []
+
+
 def test_an_audit_of_accessibility_passes(written: Path) -> None:
     audit = pytest.importorskip(
         "axe_playwright_python.sync_playwright", reason="axe is not installed: pip install 'watchsim[browser]'"
@@ -531,3 +598,24 @@ def test_a_comparison_shows_the_old_outlines_as_ghosts_and_g_hides_them(tmp_path
             shown.append(page.evaluate("window.watchsim.ghost()"))
         assert shown[0] > 0 and shown == [shown[0], 0, shown[0]]
         assert page.said == [] and len(page.asked) == 1
+
+
+def test_what_a_phone_cuts_of_a_study_is_scrolled_and_shaded(tmp_path: Path) -> None:
+    guide = Path(__file__).parents[2] / "docs" / "guide" / "tolerances" / "swiss_lever.toml"
+    target = tolerance_page(tolerance(guide, 16), tmp_path / "study.html")
+    with opened(target, 360, 740, script=False) as page:
+        assert page.evaluate("document.documentElement.scrollWidth") == 360
+        cut = page.locator(".scroll").filter(has=page.locator("table, img"))
+        wide = [one for one in cut.all() if one.evaluate("box => box.scrollWidth > box.clientWidth")]
+        assert len(wide) >= 3 and all(one.get_attribute("tabindex") == "0" for one in wide)
+
+        def shades(one: Any) -> list[bool]:
+            """Is there a shade at the left and right edge, halfway down?"""
+            one.scroll_into_view_if_needed()
+            shot = iio.imread(one.screenshot())[..., :3].astype(int).sum(axis=2)
+            return [bool(np.median(shot[:, side]) < np.median(shot[:, inward]) - 30) for side, inward in ((0, 20), (-1, -20))]
+
+        for one in (wide[0], page.locator(".scroll:has(img)")):
+            assert shades(one) == [False, True]
+            one.evaluate("box => { box.scrollLeft = box.scrollWidth; }")
+            assert not shades(one)[1]

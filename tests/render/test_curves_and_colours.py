@@ -52,7 +52,7 @@ from watchsim.render.palette import (
 )
 from watchsim.render.rows import COLUMNS, bands, distinct, reduced
 from watchsim.render.study_plot import ENGINES, plot_speed
-from watchsim.render.style import SERIES, figure, key
+from watchsim.render.style import SERIES, figure, key, ticks
 from watchsim.render.timing_plot import PAPER, plot_tape
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.state import EventKind
@@ -487,3 +487,18 @@ def test_every_column_keeps_its_first_last_least_and_largest(columns: int) -> No
         expected |= {float(i) for i in (own[0], own[-1], own[np.argmin(y[own])], own[np.argmax(y[own])])}
     assert kept == expected
     assert [len(low) for _, low, _ in bands(x, y, columns)] == [columns]
+
+
+@pytest.mark.parametrize("most", [4, 5, 9])
+@pytest.mark.parametrize("across", [0.3, 4.0, 15.0, 31.0, 44.0, 76.0, 130.0, 300.0, 560.0, 900.0, 5736.0, 28800.0, 1e6])
+def test_numbers_of_angles_are_parts_of_a_turn(across: float, most: int) -> None:
+    axes = figure().add_subplot()
+    axes.set_ylim(-0.37 * across, 0.63 * across)
+    ticks(axes.yaxis, most, angle=True)
+    places = np.array([place for place in axes.get_yticks() if -0.37 * across <= place <= 0.63 * across])
+    step = places[1] - places[0]
+    assert 2 <= len(places) <= most + 1 and np.allclose(np.remainder(places / step + 0.5, 1.0), 0.5)
+    decimal = np.isclose(step / 10.0 ** np.floor(np.log10(step * 1.0001)), (1.0, 2.0, 5.0)).any()
+    divides = np.isclose(360.0 / step, round(360.0 / step)) and step >= 10.0
+    turns = np.isclose(step / 360.0 % 1.0, 0.0)
+    assert (decimal and step <= 10.0) or divides or turns, step

@@ -165,7 +165,8 @@ def test_the_command_prints_the_fixed_names_resumes_and_makes_a_page(
     assert all(row["rate_s_per_d"] == told["rows"][0]["rate_s_per_d"] for row in told["rows"])  # a poised balance
     assert told["iso3159"]["mean_daily_rate"]["limit"] == [-4.0, 6.0] and told["iso3159"]["thermal_variation"]["ok"] is None
     text = positions_text(positions_of(told))
-    assert "the scene's own is none" in text and "not judged: needs CH at 8 °C and 38 °C" in text
+    assert "poise error: none (below 0.001 µg·cm); the scene's own is none" in text
+    assert "not judged: needs CH at 8 °C and 38 °C" in text
     (folder / "rows.jsonl").write_text("".join((folder / "rows.jsonl").read_text(encoding="utf-8").splitlines(True)[:4]))
     assert main([*asked, "--resume"]) == 0
     again = json.loads(capsys.readouterr().out)

@@ -181,8 +181,13 @@ def page(
     template = Template(_asset("page.html"))
     places: dict[str, object] = {name: joined(part) for name, part in parts.items()}
     places |= {"live": live or "", "connect": " connect-src 'self';" if live else ""}
-    style = "".join((library_style, *(_asset(f"{name}.css") for name in styles)))
-    return template.substitute(places, title=joined(title), digest=digest, style=style, script=script, data=embedded(data))
+    look = "".join((library_style, *(_asset(f"{name}.css") for name in styles)))
+    return template.substitute(places, title=joined(title), digest=digest, style=look, script=script, data=embedded(data))
+
+
+def style() -> Markup:
+    """The look of every page, for those without a player."""
+    return Markup(_asset("page.css"))
 
 
 def _asset(name: str) -> str:

@@ -19,8 +19,9 @@ def positions_page(folder: str | Path, path: str | Path) -> Path:
     """Write the study in a folder as one self-contained HTML file; ValueError for a path with another ending."""
     found = positions_of(json.loads((Path(folder) / FILE).read_text(encoding="utf-8")))
     parts = [
-        element("p", f"{poise_words(found)}.", class_="yield"),
-        section("readings", "What a timing machine shows", *_readings(found)),
+        section(
+            "readings", "What a timing machine shows", *_readings(found), element("p", f"{poise_words(found)}.", class_="note")
+        ),
         section("dial", "Over the hour that is up", drawn(plot_positions(found), "rate and amplitude on dials")),
         section("iso3159", "ISO 3159", table(SIZES, criteria_rows(found), "criteria of a chronometer", numeric=False)),
     ]

@@ -255,7 +255,8 @@ JUDGED = {True: "✓ kept", False: "✗ missed", None: "not judged"}
 def sheet(run: Trajectory, numbers: Mapping[str, Any]) -> Markup:
     """All sections of the sheet that this run has something to say to."""
     parts = (timekeeping(run, numbers), phase_tables(each_phase(run)), function_tables(run.scene), _energy(run))
-    words = section("words", "The run in words", element("pre", headlines(run, numbers), tabindex=0))
+    lines = (element("span", line) for line in headlines(run, numbers).splitlines())
+    words = section("words", "The run in words", element("pre", *lines))
     return joined((*parts, _judgement(numbers), _parameters(run), words))
 
 

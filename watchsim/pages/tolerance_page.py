@@ -7,36 +7,27 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from watchsim.pages.html import Content, Markup, element, image, joined, section, table
+from watchsim.pages.html import Content, Markup, element, image, joined, section, style, table
 from watchsim.pages.report_page import check_page
 from watchsim.render.style import MM
 from watchsim.render.tolerance_plot import plot_tolerance
 from watchsim.storage.write import write_file
+from watchsim.studies.axes import in_words
 from watchsim.studies.point import OUTPUTS
 from watchsim.studies.tolerance_result import ToleranceStudy
+from watchsim.units import signed
 
 DOTS = 1400  # across the picture
 MOST = 12  # contributions in a table
 VIEWPORT = element("meta", name_="viewport", content="width=device-width, initial-scale=1")
-LOOK = Markup(
-    "body{font:15px/1.45 system-ui,sans-serif;color:#23272c;background:#f6f3ed}"
-    "body{max-width:1100px;margin:24px auto;padding:0 16px}"
-    "h1{font-size:22px}h2{font-size:17px;margin-top:28px}table{border-collapse:collapse;font-size:14px}"
-    "th,td{padding:3px 10px;text-align:right;border-bottom:1px solid #ddd8ce}"
-    "th:first-child,table:not(.numbers) :is(th,td){text-align:left}"
-    "td:not(:last-child){white-space:nowrap}.picture img{min-width:640px}"
-    "caption{text-align:left;color:#5b6168;padding-bottom:4px}.scroll{overflow-x:auto}img{max-width:100%;height:auto}"
-    ".yield{font-size:19px}code{background:#ece7dd;padding:1px 4px}"
-)
 
 
 def tolerance_page(study: ToleranceStudy, path: str | Path) -> Path:
     """Write the study as one self-contained HTML file; ValueError for a path with another ending, OSError where it fails."""
     picture = drawn(plot_tolerance(study), f"plots of the study: {study.message}")
     parts = [
-        element("p", f"{study.message}.", class_="yield"),
-        _yields(study),
-        section("spread", "What the watches do", _spread(study), picture),
+        section("yield", "Yield", element("p", f"{study.message}."), _yields(study)),
+        section("spread", "What the watches do", *_spread(study), picture),
         section("tolerances", "What they are made to", _tolerances(study)),
         section("contributions", "Which dimension decides it", *_contributions(study)),
         section("worst", "The worst of them", _worst(study)),
@@ -49,14 +40,15 @@ def drawn(figure: Any, words: str) -> Markup:
     made = io.BytesIO()
     figure.savefig(made, format="png", dpi=DOTS / figure.get_figwidth())
     shown = image(made.getvalue(), words, round(figure.get_figwidth() / MM * 6))
-    return element("div", shown, class_="scroll picture", tabindex=0, role="region", aria_label=words)
+    return element("div", shown, class_="scroll", tabindex=0, role="region", aria_label=words)
 
 
 def written(title: str, parts: Sequence[Content], path: str | Path) -> Path:
-    """The page of a study with these parts below its title, as one file."""
+    """The page of a study with these parts below its title, as one file; light, as its pictures are."""
     target = check_page(path)
-    head = element("head", element("meta", charset="utf-8"), VIEWPORT, element("title", title), element("style", LOOK))
-    text = joined([Markup("<!doctype html>"), element("html", head, element("body", element("h1", title), *parts), lang="en")])
+    head = element("head", element("meta", charset="utf-8"), VIEWPORT, element("title", title), element("style", style()))
+    body = element("body", element("header", element("h1", title)), element("main", element("article", *parts, id="sheet")))
+    text = joined([Markup("<!doctype html>"), element("html", head, body, lang="en", data_theme="light", class_="study")])
     write_file(target, lambda place: place.write_bytes(text.encode("utf-8", "replace")), "the page")
     return target
 
@@ -74,21 +66,25 @@ def _yields(study: ToleranceStudy) -> Markup:
     return table(("yield by", "share", "from", "to"), rows, f"{study.good} of {study.samples} samples are good")
 
 
-def _spread(study: ToleranceStudy) -> Markup:
+def _share(value: float | None) -> str:
+    return "" if value is None else signed(value, 4)
+
+
+def _spread(study: ToleranceStudy) -> list[Content]:
     labels = {one.column: f"{one.label} ({one.unit})" if one.unit else one.label for one in OUTPUTS.values()}
     rows = []
     for column, one in study.outputs.items():
         ends = [one.quantiles[q] for q in ("0.00135", "0.5", "0.99865")]
         linear = (one.linear_sigma, one.linear_low, one.linear_high)
-        rows.append((labels[column], *map(_number, (one.mean, one.sigma, *ends, one.cp, one.cpk, *linear)), one.remark))
-    head = ("", "mean", "σ", "0.1 %", "median", "99.9 %", "Cp", "Cpk", "linear σ", "worst case from", "to", "")
-    return table(
-        head, rows, "mean and scatter of all samples, and what the linear prediction (root of squares, worst case) says"
-    )
+        rows.append((labels[column], *map(_number, (one.mean, one.sigma, *ends, one.cp, one.cpk, *linear))))
+    head = ("", "mean", "σ", "0.1 %", "median", "99.9 %", "Cp", "Cpk", "linear σ", "worst case from", "to")
+    words = "mean and scatter of all samples, and what the linear prediction (root of squares, worst case) says"
+    remarks = [f"{labels[column]}: {one.remark}." for column, one in study.outputs.items() if one.remark]
+    return [table(head, rows, words), *(element("p", remark, class_="note") for remark in remarks)]
 
 
 def _tolerances(study: ToleranceStudy) -> Markup:
-    rows = [(one.key, one.shown(one.nominal), one.words) for one in study.plan.scene.tolerances]
+    rows = [(in_words(one.key), one.shown(one.nominal), one.words) for one in study.plan.scene.tolerances]
     return table(("", "nominal", "limits"), rows, "the dimensions that are drawn", numeric=False)
 
 
@@ -97,7 +93,7 @@ def _contributions(study: ToleranceStudy) -> list[Content]:
     labels = {one.column: one.label for one in OUTPUTS.values()}
     for name, each in study.contributions.items():
         rows = [
-            (one.key, *(_number(value) for value in (one.first, one.total, one.total_error, one.linear, one.rank)))
+            (in_words(one.key), *(_share(value) for value in (one.first, one.total, one.total_error, one.linear, one.rank)))
             for one in each[:MOST]
         ]
         known = f", {_percent(study.explained[name])} of the variance explained" if name in study.explained else ""

@@ -441,20 +441,24 @@ def clear_labels(figure: Figure) -> None:
 
 
 def _places(count: int, width: float, shape: float) -> tuple[list[tuple[float, float, float, float]], float]:
-    """(left, top, width, height) of every view, mm, and where they end: on top the first two, the whole as narrow as it is."""
+    """(left, top, width, height) of every view, mm, and where they end; the whole as narrow as it is, beside it the first
+    view, or the first two of an even number, then pairs."""
     room = width - 2.0 * MARGIN
     if width <= 1.5 * COLUMN:
         tall = [min(1.2 * room, room / shape)] + [0.8 * room] * (count - 1)
         tops = [TITLE + ABOVE + sum(tall[:i]) + i * (GAP + ABOVE) for i in range(count + 1)]
         return [(MARGIN, top, room, high) for top, high in zip(tops, tall, strict=False)], tops[-1]
     half = 0.5 * (room - GAP)
-    first = min(half, max(0.3 * room, FIRST * shape))
-    top = TITLE + ABOVE
-    places = [(MARGIN, top, first, FIRST), (MARGIN + first + GAP, top, room - first - GAP, FIRST)]
-    top = TITLE + 2.0 * ABOVE + FIRST + GAP
-    for i in range(count - 2):
-        places.append((MARGIN + (i % 2) * (half + GAP), top + (i // 2) * (PANEL + GAP + ABOVE), half, PANEL))
-    return places[:count], top + math.ceil((count - 2) / 2) * (PANEL + GAP + ABOVE) - ABOVE
+    step, top = PANEL + GAP + ABOVE, TITLE + ABOVE
+    beside = 1 + count % 2
+    tall = FIRST if beside == 1 else PANEL + step
+    first = min(half, max(0.3 * room, tall * shape))
+    wide, each = room - first - GAP, FIRST if beside == 1 else PANEL
+    places = [(MARGIN, top, first, tall), *((MARGIN + first + GAP, top + i * step, wide, each) for i in range(beside))]
+    top += tall + GAP + ABOVE
+    pairs = count - 1 - beside
+    places += [(MARGIN + (i % 2) * (half + GAP), top + (i // 2) * step, half, PANEL) for i in range(pairs)]
+    return places[:count], top + pairs // 2 * step - ABOVE
 
 
 def write_sheet(path: str | os.PathLike[str], figure: Figure) -> None:

@@ -222,10 +222,8 @@ def _limits(axes: Axes, values: Array, angle: bool) -> None:
         style.limits(axes, low, high, flat=0.1, unit=1.0)
     else:
         style.limits(axes, low, high, flat=FLAT, unit=1.0)
-    if angle and high - low > 60.0:
-        style.ticks(axes.yaxis, 9, [1, 1.5, 1.8, 3, 3.6, 4.5, 6, 9, 10])
-    else:
-        style.ticks(axes.yaxis, 5)
+    large = angle and high - low > 60.0
+    style.ticks(axes.yaxis, 9 if large else 5, angle=large)
     plain = ScalarFormatter(useOffset=high - low <= 1e-4 * max(abs(low), abs(high)))
     plain.set_scientific(False)
     axes.yaxis.set_major_formatter(plain)
@@ -299,7 +297,7 @@ def _portrait(axes: Axes, channel: Channel, rows: tuple[Array, Array, Array], ph
     axes.ticklabel_format(useOffset=False)
     axes.yaxis.set_offset_position("right")  # opposite the title
     wide = style.width_mm(axes)
-    style.spare_labels(axes.xaxis, wide / style.POINT, steps=[1, 2, 3, 4.5, 5, 9, 10])
+    style.spare_labels(axes.xaxis, wide / style.POINT, angle=channel.units["angle"] == ROTATION[0]["angle"])
     style.ticks(axes.yaxis, 5)
     axes.set_xlabel(f"{channel.names['angle']} ({channel.units['angle']})", labelpad=1.5)
     axes.set_ylabel(f"{channel.names['velocity']} ({channel.units['velocity']})")

@@ -155,14 +155,19 @@ class Met:
         if known is not None and (wheel not in bodies or known == "impulse stone"):
             return known
         if wheel is None or lever is None or self._parts.oscillator is None:
-            return spaced(f"{body} {layer}")
+            return _plain(body, layer)
         if body == wheel:
             return "wheel"
         if body == lever and wheel in bodies:
             met = self._compiled.model.contacts[contact]
             stone = next(side for side in (int(met.a), int(met.b)) if self._compiled.owners[side] == body)
             return f"{pallet_side(self._run, self._compiled, self._parts, stone, time)} {self._kind}"
-        return spaced(f"{body} {layer}")
+        return _plain(body, layer)
+
+
+def _plain(body: str, layer: str) -> str:
+    """Of a side without a role; names of layers in capitals, as drawings have them, are words here."""
+    return spaced(f"{body} {layer.lower() if layer.isupper() else layer}")
 
 
 def _studs(scene: Scene) -> Iterator[PartName]:

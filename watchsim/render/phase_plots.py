@@ -195,19 +195,19 @@ def _column(
         column, colour = run.slices[name].start, worn[name].line
         fast = bool(np.degrees(np.abs(run.u[shown, column]).max()) >= KILO)  # the same in all columns
         for axes, values, unit in (
-            (panels[2 * k], np.degrees(q[:, column]), f"{spaced(name)} (°)"),
-            (panels[2 * k + 1], np.degrees(u[:, column]) / (KILO if fast else 1.0), f"{spaced(name)} ({'1000 ' * fast}°/s)"),
+            (panels[2 * k], np.degrees(q[:, column]), "°"),
+            (panels[2 * k + 1], np.degrees(u[:, column]) / (KILO if fast else 1.0), f"{'1000 ' * fast}°/s"),
         ):
             axes.plot(x, values, color=colour, linewidth=style.CURVE, solid_joinstyle="round", zorder=3)
             axes.set_xlim(1e3 * (span[0] - zero), 1e3 * (span[1] - zero))
             style.dress(axes)
             style.limits(axes, float(values.min()), float(values.max()), 0.1)
             style.ticks(axes.xaxis, 5)
-            style.ticks(axes.yaxis, 4, [1, 2, 3, 5, 9, 10])
+            style.ticks(axes.yaxis, 4, angle=unit == "°")
             axes.ticklabel_format(useOffset=False)
             axes.tick_params(labelsize=style.SMALL)
             if first:
-                axes.set_ylabel(unit, fontsize=style.SMALL, color=colour, weight="bold")
+                axes.set_ylabel(f"{spaced(name)} ({unit})", fontsize=style.SMALL, color=colour, weight="bold")
                 axes.yaxis.set_label_coords(-LABEL_AT / style.width_mm(axes), 0.5)
     for axes in panels:
         for one in beats if beat is None else [beat]:
@@ -412,7 +412,7 @@ def _curves(made: Figure, run: Trajectory, beat: Beat, instants: list[Instant], 
         own.plot(x, values, color=worn[name].line, linewidth=style.CURVE, gid=f"angle {name}", zorder=3)
         style.limits(own, float(values.min()), float(values.max()))
         own.set_ylabel(f"{spaced(name)} (°)", color=worn[name].line, labelpad=1.5)
-        style.ticks(own.yaxis, 4, [1, 2, 3, 5, 10])
+        style.ticks(own.yaxis, 4, angle=True)
     other.spines["right"].set_visible(True)
     other.spines["right"].set_color(FAINT)
     other.spines["right"].set_linewidth(style.HAIR)

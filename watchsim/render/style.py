@@ -6,6 +6,7 @@ A figure is as wide as it will be printed, so that a letter of 6 pt here is one 
 from __future__ import annotations
 
 import io
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
@@ -18,7 +19,7 @@ from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.text import Text
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import MaxNLocator, MultipleLocator
 from numpy.typing import NDArray
 
 from watchsim.analysis.phases import Phase, phases
@@ -93,9 +94,20 @@ def height_mm(axes: Axes) -> float:
     return float(axes.get_window_extent().height) / axes.figure.dpi / MM
 
 
-def ticks(axis: Axis, most: int, steps: Sequence[float] = (1, 2, 5, 10)) -> None:
-    """Numbers at multiples of `steps`, about so many."""
-    axis.set_major_locator(MaxNLocator(nbins=most, steps=steps))
+PARTS_OF_A_TURN = (10.0, 15.0, 30.0, 45.0, 90.0, 180.0, 360.0)  # °
+PLAIN = (1, 2, 5, 10)
+
+
+def ticks(axis: Axis, most: int, angle: bool = False) -> None:
+    """Numbers at 1, 2 and 5 times powers of ten, about so many; large angles (°) in parts of a turn, or whole turns."""
+    low, high = sorted(axis.get_view_interval())
+    least = (high - low) / most
+    if not angle or least <= PARTS_OF_A_TURN[0] / 2.0:
+        axis.set_major_locator(MaxNLocator(nbins=most, steps=PLAIN))
+        return
+    turns = 10.0 ** math.floor(math.log10(max(least / 360.0, 1.0)))
+    steps = (*PARTS_OF_A_TURN, *(360.0 * turns * k for k in PLAIN))
+    axis.set_major_locator(MultipleLocator(next(step for step in steps if step >= least)))
 
 
 def minus(text: str) -> str:
@@ -301,10 +313,10 @@ def place_panels(figure: Figure, panels: NDArray[np.object_], above: float) -> N
             axes.xaxis.label.set_verticalalignment("center")
 
 
-def spare_labels(axis: Axis, length: float, steps: Sequence[float], most: int = 5) -> None:
-    """Numbers at multiples of `steps`, at most so many, and so few that they stand apart on an x axis of that length (pt)."""
+def spare_labels(axis: Axis, length: float, angle: bool = False, most: int = 5) -> None:
+    """Numbers as of `ticks`, so few that they stand apart on an x axis of that length (pt)."""
     for bins in range(most, 0, -1):
-        ticks(axis, bins, steps)
+        ticks(axis, bins, angle)
         places = _ticks(axis)
         apart = length * (places[1] - places[0]) / float(np.ptp(axis.get_view_interval())) if len(places) > 1 else length
         if _label_width(axis) + GAP <= apart:

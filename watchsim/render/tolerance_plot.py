@@ -8,9 +8,11 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
 from watchsim.render import style
-from watchsim.render.palette import FAINT, GRID, INK
+from watchsim.render.palette import FAINT, INK
 from watchsim.render.study_plot import output_label
 from watchsim.scene.scene import Scene
 from watchsim.studies.axes import in_words
@@ -25,6 +27,7 @@ MOST_OUTPUTS, MOST_BARS = 6, 8
 TALL, BARS_TALL, SCATTER_TALL, TITLE_TALL = 42.0, 50.0, 58.0, 12.0  # mm, of the rows of panels
 BINS = 40
 LEAST = 0.01  # of the variance: less has no bar
+PALE = "#9fb4c4"  # good watches where failing ones matter: seen on white, and behind their colours
 
 
 def plot_tolerance(study: ToleranceStudy, width: float = style.FULL, ax: Axes | None = None) -> Figure:
@@ -45,6 +48,7 @@ def plot_tolerance(study: ToleranceStudy, width: float = style.FULL, ax: Axes | 
     samples = samples_of(study)
     for axes, one in _panels(parts[0], outputs, across):
         _histogram(axes, study, samples, one)
+    _key(parts[0], samples)
     for axes, (name, label) in _panels(parts[1], with_bars, across):
         _bars(axes, label, study.contributions[name], study.explained.get(name, 1.0))
     pair = parts[2].subplots(1, 2)
@@ -88,6 +92,17 @@ def _histogram(axes: Axes, study: ToleranceStudy, samples: Samples, output: Outp
     axes.set_yticks([])
     style.dress(axes, grid="none")
     style.ticks(axes.xaxis, 4)
+
+
+def _key(figure: Any, samples: Samples) -> None:
+    """What the colours of the histograms mean, and their lines, above them."""
+    there = [(style.GOOD, "good", samples.good.any()), (style.BAD, "failing", not samples.good.all())]
+    marks: list[tuple[Any, str]] = [(Patch(color=colour), words) for colour, words, any_of_them in there if any_of_them]
+    if samples.plan.limits:
+        marks.append((Line2D([], [], color=INK, linewidth=style.CURVE), "limit"))
+    marks.append((Line2D([], [], color=FAINT, linewidth=style.THIN, linestyle="--"), "linear prediction"))
+    look: dict[str, Any] = {"frameon": False, "fontsize": style.SMALL, "labelcolor": INK, "ncols": len(marks)}
+    figure.legend(*zip(*marks, strict=True), loc="outside upper left", **look)
 
 
 def _bars(axes: Axes, label: str, each: tuple[Contribution, ...], explained: float) -> None:
@@ -144,7 +159,7 @@ def _map(axes: Axes, study: ToleranceStudy, samples: Samples) -> None:
     away = np.abs(apart(samples, next(iter(study.failures)))[0])
     decides = dict.fromkeys(study.plan.space.draws[j].name for j in np.argsort(-away, kind="stable"))
     (x, across), (y, up) = (_values(study, samples, name) for name in list(decides)[:2])
-    axes.scatter(x[samples.good], y[samples.good], s=3.0, color=GRID, linewidths=0.0, label="good")
+    axes.scatter(x[samples.good], y[samples.good], s=4.0, color=PALE, linewidths=0.0, label="good")
     for i, words in enumerate(study.failures):
         mine = np.array([wrong == words for wrong in samples.wrong])
         mark, colour = style.MARKERS[i % len(style.MARKERS)], style.SERIES[(i + 1) % len(style.SERIES)]

@@ -204,6 +204,9 @@ def positions_rows(found: Positions, states: Sequence[tuple[float, float]]) -> l
 READ_TO = {"rate_s_per_d": 2, "amplitude_deg": 2, "beat_error_ms": 4}  # decimals
 
 
+LEAST_POISE = 1e-14  # kg·m, a thousandth of what is taken off a balance; below stands the rounding of rates
+
+
 def poise_words(found: Positions) -> str:
     """The poise error by the rates, and the true one."""
     from watchsim.studies.positions import SURE
@@ -212,6 +215,10 @@ def poise_words(found: Positions) -> str:
     if poise is None or balance is None:
         return "poise error: not known without three upright positions in which a sprung balance ticks"
     true = f"{1e11 * balance.amount:.4g} µg·cm at {math.degrees(balance.direction) % 360.0:.4g}°"
+    if max(poise.amount, poise.error) < LEAST_POISE:
+        return (
+            f"poise error: none (below {1e11 * LEAST_POISE:g} µg·cm); the scene's own is {true if balance.amount else 'none'}"
+        )
     if poise.error > SURE * poise.amount:
         seen = f"below {1e11 * poise.error:.2g} µg·cm, which these rates cannot show"
         return f"poise error: {seen}; the scene's own is {true if balance.amount else 'none'}"

@@ -17,6 +17,7 @@ import numpy as np
 
 from watchsim.analysis.verdict_kinds import TICKS
 from watchsim.displays import notebook_html
+from watchsim.studies.axes import in_words
 from watchsim.studies.chaos import Basis, indices
 from watchsim.studies.point import OUTPUTS, Row
 from watchsim.studies.sampling import Floats, Space, deviation
@@ -443,6 +444,6 @@ def _message(samples: Samples, share: Share) -> str:
             size = abs(differ[j]) / known_unit(one.unit).factor
             side = "larger" if (away[j] > 0.0) == (one.nominal >= 0.0) else "smaller"  # of a torque to the left its magnitude
             gap = "" if one.unit in ("", "°") else " "
-            traits.append(f"{space.draws[j].name} is {size:.2g}{gap}{one.unit} {side}")
+            traits.append(f"{in_words(space.draws[j].name)} is {size:.2g}{gap}{one.unit} {side}")
     how = f"; in these, on average, {' and '.join(traits)} than in the others" if traits else ""
     return f"{first}. Most failures: {words} ({number} of {int((~samples.good).sum())}){how}"
