@@ -451,11 +451,12 @@ def _places(count: int, width: float, shape: float) -> tuple[list[tuple[float, f
     half = 0.5 * (room - GAP)
     step, top = PANEL + GAP + ABOVE, TITLE + ABOVE
     beside = 1 + count % 2
-    tall = FIRST if beside == 1 else PANEL + step
-    first = min(half, max(0.3 * room, tall * shape))
+    high = FIRST if beside == 1 else PANEL + step
+    first = min(half, max(0.3 * room, high * shape))
     wide, each = room - first - GAP, FIRST if beside == 1 else PANEL
-    places = [(MARGIN, top, first, tall), *((MARGIN + first + GAP, top + i * step, wide, each) for i in range(beside))]
-    top += tall + GAP + ABOVE
+    places = [(MARGIN, top, first, high)]
+    places += [(MARGIN + first + GAP, top + i * step, wide, each) for i in range(beside)]
+    top += high + GAP + ABOVE
     pairs = count - 1 - beside
     places += [(MARGIN + (i % 2) * (half + GAP), top + (i // 2) * step, half, PANEL) for i in range(pairs)]
     return places[:count], top + pairs // 2 * step - ABOVE
