@@ -147,8 +147,7 @@ def _of_scene(scene: Scene, name: str) -> Side:
     if not (keeps_time(scene) and is_driven(scene)):
         return _of_run(simulate(scene), name, None)
     cycle = steady(scene)
-    found = {**cycle.numbers(), "multiplier_error": max(cycle.multipliers_error, default=None)}
-    found["multiplier"] = max(cycle.multipliers, key=abs, default=None)
+    found = {**cycle.numbers(), **dict(zip(("multiplier", "multiplier_error"), cycle.left_after_one(), strict=True))}
     return Side(name, scene, _numbers(found, (*TIMED, "multiplier")), cycle.verdict, cycle.message, None, cycle=True)
 
 

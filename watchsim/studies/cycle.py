@@ -159,6 +159,15 @@ class Cycle:
     def _repr_html_(self) -> str:
         return notebook_html(self)
 
+    def left_after_one(self) -> tuple[float | None, float | None]:
+        """The multiplier and its error for one oscillation, the mean of several: as watches with and without alike teeth
+        compare."""
+        value, error = max(self.multipliers, key=abs, default=None), max(self.multipliers_error, default=None)
+        if value is None or self.oscillations == 1:
+            return value, error
+        one = abs(value) ** (1.0 / self.oscillations)
+        return one, error and value and error * one / (abs(value) * self.oscillations)
+
     def numbers(self) -> dict[str, Any]:
         """What `steady --json` prints."""
         found = {name: list(value) if isinstance(value := getattr(self, name), tuple) else value for name in JSON_NAMES}

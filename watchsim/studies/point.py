@@ -166,8 +166,7 @@ def _by_shooting(question: Question, scene: Scene) -> Row:
             row[one.column], row[f"{one.column}_error"] = numbers[one.column], numbers[f"{one.column}_error"]
     row["cells_s"] = cycle.cells_s
     row["uneven_ms"] = cycle.uneven_ms if cycle.found else None
-    row["multiplier"] = max(cycle.multipliers, key=abs, default=None)
-    row["multiplier_error"] = max(cycle.multipliers_error, default=None)
+    row["multiplier"], row["multiplier_error"] = cycle.left_after_one()
     return row
 
 
