@@ -15,7 +15,7 @@ from every_time import few
 from render.fake_runs import disc_run
 
 from watchsim.analysis.headlines import PHASE_COLUMNS, beats_csv, phases_csv
-from watchsim.analysis.phases import Marks, anchor_marks, phases
+from watchsim.analysis.phases import Marks, anchor_marks, phases, phases_within
 from watchsim.analysis.timeline import shown_beats, timeline_text
 from watchsim.analysis.timing import beats, held
 from watchsim.pages.timing_sheet import phase_tables
@@ -333,3 +333,18 @@ def test_a_wheel_that_falls_back_does_not_go_on(advance: float, goes_on: bool) -
     marks = beat(at_rows=[0.0, 0.0, *PLACES_ANCHOR_MARKS[1:], advance + (advance - 10.0) * 0.2 / 0.3])
     assert (marks is not None) is goes_on
     assert math.isclose(np.interp(END, [2.7, 3.2], [10.0, advance + (advance - 10.0) * 0.2 / 0.3]), advance)
+
+
+@pytest.mark.parametrize("profile", ["swiss_lever", "graham"])
+def test_a_beat_that_the_end_of_the_run_cuts_has_the_phases_that_it_has_in_a_longer_run(profile: str) -> None:
+    """Pictures shade it: its noises are heard, though its turning point is not reached."""
+    longer = simulate(load(profiles_dir() / profile), 5.0, record="all")
+    beat = len(beats(longer)) - 2
+    known = [one for one in phases(longer) if one.beat == beat and one.name not in ("locked", "recoil")]
+    end = known[-1].end + 0.2 * (float(beats(longer).end[beat - 1]) - known[-1].end)
+    cut = simulate(load(profiles_dir() / profile), end, record="all")
+    assert len(beats(cut)) == beat - 1
+    found = [one for one in phases_within(cut, (known[0].start, end)) if one.beat == beat]
+    assert [one.name for one in found] == [one.name for one in known] and len(known) >= 2
+    assert [one.start for one in found] == pytest.approx([one.start for one in known], abs=1e-9)
+    assert [own[0].beat for own in passing(cut, (known[0].start - 1e-3, end))][-1] == beat

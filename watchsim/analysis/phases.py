@@ -27,7 +27,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.analysis.escape_wheel import progress
-from watchsim.analysis.timing import Beats, beats, beats_within, between, contact_columns, held, involves, is_recorded
+from watchsim.analysis.timing import (
+    Beats,
+    beats,
+    beats_within,
+    between,
+    contact_columns,
+    held,
+    involves,
+    is_recorded,
+    with_the_last,
+)
 from watchsim.scene.roles import Roles, hinged_pallets, keeps_time, with_anchor
 from watchsim.simulation.recording import Pair
 from watchsim.simulation.state import EventKind
@@ -465,7 +475,7 @@ def phases_within(run: Trajectory, window: Sequence[float]) -> list[Phase]:
     """The phases of the beats that lie in a window (s), and of one before and after it."""
     if not keeps_time(run.scene):
         return []
-    near = beats_within(beats(run), window)
+    near = beats_within(with_the_last(run, beats(run)), window)
     return phases(run, near) if len(near) else []
 
 

@@ -275,6 +275,18 @@ def beats_within(found: Beats, window: Sequence[float]) -> Beats:
     return replace(found, before=found.before + own.start, **cut)
 
 
+def with_the_last(run: Trajectory, found: Beats) -> Beats:
+    """The half swings and the one that the end of the run cuts short, whose noises and phases are there all the same."""
+    start, end = found.end[-1:], run.t[-1:]
+    if not len(found) or not end[0] > start[0]:
+        return found
+    tick = ticks(run, found.body, start, end, 0.5 * found.nominal_period)
+    last = {"start": start, "end": end, "start_at": found.end_at[-1:], "tick": tick}
+    names = [field.name for field in fields(found) if isinstance(getattr(found, field.name), np.ndarray)]
+    longer: dict[str, Any] = {name: np.append(getattr(found, name), last.get(name, math.nan)) for name in names}
+    return replace(found, **longer)
+
+
 def _swinging(run: Trajectory, body: str | None) -> str:
     if body is not None:
         return run.scene.body(body).name

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from watchsim.analysis.phases import Phase, phases
 from watchsim.analysis.timeline import BEGINNING, RESTING
-from watchsim.analysis.timing import beats, beats_within
+from watchsim.analysis.timing import beats, beats_within, with_the_last
 from watchsim.render.palette import FAINT, GRID, INK
 from watchsim.render.view import Window, recorded, stretch
 from watchsim.scene.roles import frequency, keeps_time, with_anchor
@@ -338,12 +338,16 @@ def _ticks(axis: Axis) -> list[float]:
 MOST_PASSING_PHASES = 12  # beats; of more the phases would be hairlines
 
 
-def passing(run: Trajectory, window: Window) -> list[list[Phase]]:
-    """The phases of each beat that is in sight, cut to the window; none where there is no escapement, or too much is shown."""
+def passing(run: Trajectory, window: Window, whole: bool = False) -> list[list[Phase]]:
+    """The phases of each beat that is in sight, cut to the window; none where there is no escapement, or too much is shown.
+
+    `whole`: without the beat that the end of the run cuts short.
+    """
     found = with_anchor(run.scene)
     if found.wheel is None or found.lever is None or not keeps_time(run.scene):
         return []
-    near = beats_within(beats(run), window)
+    swings = beats(run)
+    near = beats_within(swings if whole else with_the_last(run, swings), window)
     if not 0 < len(near) <= MOST_PASSING_PHASES + 2:
         return []
     start, end = window
@@ -378,7 +382,7 @@ def one_cycle(run: Trajectory) -> Shown:
     hertz = frequency(run.scene) if keeps_time(run.scene) else None
     if not hertz:
         return Shown((start, end), [])
-    found = passing(run, (max(start, end - SEARCHED / hertz), end))
+    found = passing(run, (max(start, end - SEARCHED / hertz), end), whole=True)
     whole = [beat for beat in found if beat[0].name in BEGINNING and beat[-1].name in RESTING][-2:]
     if len(whole) == 2:
         return Shown((whole[0][0].start, whole[1][-1].end), whole)
