@@ -148,7 +148,7 @@ def test_forces_of_a_lever_escapement_are_those_that_moved_it() -> None:
 
 def test_what_cannot_be_had_says_why() -> None:
     scene = load(profiles_dir() / "bench_lever")
-    with pytest.raises(ValueError, match="forces need a run by events"):
+    with pytest.raises(ValueError, match="forces need an event-driven run"):
         ws.forces(simulate(scene, 0.01, method="moreau"))
     with pytest.raises(ValueError, match="forces need all events"):
         ws.forces(simulate(scene, 0.01, record="statistics"))

@@ -20,7 +20,7 @@ from watchsim.storage.columns import blocks
 
 RUN = lever_run(4)
 ROWS, WIDTH = RUN.q.shape
-ORDER, UNKNOWN = "its rows are out of order, or its events of unknown contacts", "its events are of unknown bodies or kinds"
+ORDER, UNKNOWN = "its rows are out of order, or its events of unknown contacts", "its events name unknown bodies or kinds"
 
 
 def changed(name: str, values: Any) -> Trajectory:
@@ -125,7 +125,7 @@ def test_contacts_of_known_primitives_and_groups() -> None:
                 with pytest.raises(ValueError, match="contacts are of unknown primitives"):
                     _check_pairs(Pairs(names, other), groups)
     for wrong in (table.astype(float), table[:, :2].copy(), np.column_stack((table, table[:, :1]))):
-        with pytest.raises(ValueError, match="no whole numbers, three each"):
+        with pytest.raises(ValueError, match="not whole numbers in threes"):
             _check_pairs(Pairs(names, wrong), groups)
 
 

@@ -416,7 +416,7 @@ def test_after_a_fault_of_the_drawing_layers_are_not_asked_for(entry: Any) -> No
     assert solids(entry, made=outlines(sound=False)) == ((), [])
     assert solids(SHEET, made=Outlines(sound=False)) == ((), [])
     assert solids(SHEET, made=Outlines())[1] == [
-        '0: the body has no closed outline to be a plate. Write layer = "..." or draw one'
+        '0: the body has no closed outline to make a plate of. Write layer = "..." or draw one'
     ]
 
 

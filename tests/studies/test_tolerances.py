@@ -197,7 +197,7 @@ FAULTS = [
     ('"torques.0.value" = { limits = "±1 µN·m", each = true }', "one value for each tooth"),
     ('"torques.0.value" = { distribution = "file", file = "none.txt" }', "cannot be read"),
     ('"torques.0.value" = { limit = "±1 µN·m" }', 'Did you mean "limits"?'),
-    ('"balance.BODY.offset" = { limits = "±1 µm", correlated = { "none" = 0.5 } }', "is no other tolerance"),
+    ('"balance.BODY.offset" = { limits = "±1 µm", correlated = { "none" = 0.5 } }', "there is no other tolerance"),
     *(
         (
             f'"torques.0.value" = {{ limits = "±1 µN·m" }}\n'

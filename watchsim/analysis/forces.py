@@ -256,7 +256,7 @@ def forces(run: Trajectory, times: Iterable[float] | float | None = None) -> For
     impulses only, and where events were not kept.
     """
     if run.method != EVENT_DRIVEN:
-        raise ValueError(f"forces need a run by events; {run.method} knows impulses over its steps only")
+        raise ValueError(f"forces need an event-driven run; {run.method} knows impulses over its steps only")
     if run.keep == STATISTICS:
         raise ValueError('forces need all events of a run: simulate with record = "events", "all" or windows')
     if isinstance(times, Iterable) and not isinstance(times, np.ndarray):

@@ -318,7 +318,7 @@ def shown_beats(run: Trajectory, window: Sequence[float] | None = None, rubbed: 
     if parts.lever is None:
         raise ValueError(f"phases exist where there is a lever or an anchor; none stands between {parts.wheel} and {name}")
     if not knows_energies(run):
-        raise ValueError("a timeline needs a run by events with all of them kept")
+        raise ValueError("a timeline needs an event-driven run with all its events kept")
     found = beats(run)
     if window is None:
         last = float(found.end[-1]) if len(found) else run.simulated

@@ -140,7 +140,7 @@ def _text_pairs(text: str) -> tuple[list[int], list[object], str, str]:
         at = 2 * len(codes)
         if not codes:
             fault = f'this is not a DXF file: it begins with "{_printable(lines[0])}"'
-            raise DxfError(f"{fault}. Save the drawing as DXF in CAD; another ending does not make it one") from None
+            raise DxfError(f"{fault}. Save the drawing as DXF in CAD; renaming a file does not make it one") from None
         return codes, values, f'line {at + 1} reads "{_printable(lines[at])}" where a group code belongs', "line"
     return codes, values, "", "line"
 

@@ -159,7 +159,7 @@ def bending(coil: Coil) -> Bending:
         except (ValueError, np.linalg.LinAlgError):
             furthest *= 0.75
             if furthest < LEAST:
-                raise ValueError("a strip with so few turns has no balance") from None
+                raise ValueError("no balanced shape was found for a strip of so few turns") from None
 
 
 def series(line: Centreline, furthest: float) -> Bending:

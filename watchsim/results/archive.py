@@ -120,7 +120,7 @@ def _check(run: Trajectory) -> None:
         raise ValueError("its rows are out of order, or its events of unknown contacts")
     for (part,) in blocks(run.events):
         if not _within(part["body"], -1, len(run.scene.bodies)) or not set(np.unique(part["kind"]).tolist()) <= set(EventKind):
-            raise ValueError("its events are of unknown bodies or kinds")
+            raise ValueError("its events name unknown bodies or kinds")
     _check_pairs(as_pairs(run.pairs), _groups(run.scene))
     if not all(isinstance(getattr(run, name), (int, float)) for name in FLOATS) or not isinstance(run.stop_message, str):
         raise ValueError("its header holds something that is not a number")
@@ -137,7 +137,7 @@ def _check_pairs(pairs: Pairs, groups: int) -> None:
     """ValueError where a contact is not one of two named primitives and of one of the scene's `groups` of contacts."""
     table = pairs.table
     if table.dtype.kind != "i" or table.shape != (len(table), 3):
-        raise ValueError("its contacts are no whole numbers, three each")
+        raise ValueError("its contacts are not whole numbers in threes")
     if not (_within(table[:, 0], 0, groups) and _within(table[:, 1:], 0, len(pairs.names))):
         raise ValueError("its contacts are of unknown primitives")
 

@@ -221,7 +221,7 @@ class _Reader:
         if "layer" not in self.entry:
             loops = tuple(loop for loop in self.outlines.loops if loop.closed)
             if not loops and self.outlines.sound:
-                self.entry.fault("", 'the body has no closed outline to be a plate. Write layer = "..." or draw one')
+                self.entry.fault("", 'the body has no closed outline to make a plate of. Write layer = "..." or draw one')
             return loops
         broken = [finding for finding in self.outlines.errors if finding.layer == layer]
         for finding in broken:

@@ -304,13 +304,13 @@ def _correlations(scene: Scene, tables: Mapping[str, Table], found: Mapping[str,
             continue
         for other, number in value.items():
             if other not in tables or other == name:
-                table.fault("correlated", f'"{other}" is no other tolerance. {nearest(other, tables)}', with_value=True)
+                table.fault("correlated", f'there is no other tolerance "{other}". {nearest(other, tables)}', with_value=True)
             elif isinstance(number, bool) or not isinstance(number, (int, float)) or not -1.0 < number < 1.0:
                 table.fault("correlated", "a coefficient lies between -1 and 1, without its ends", with_value=True)
             else:
                 known = [found[each] for each in (name, other) if each in found]
                 if any(one.group or one.count > 1 for one in known):
-                    table.fault("correlated", "what is drawn together, or for each tooth, has no correlation of its own")
+                    table.fault("correlated", "a group, or a tolerance of each tooth, cannot have a correlation of its own")
                 first, second = (full_key(each, scene.source.get("bodies", {})) for each in (name, other))
                 pairs.append(Correlation((first, second), float(number)))
     return pairs

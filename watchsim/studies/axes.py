@@ -122,7 +122,7 @@ def _axis(scene: Scene, key: str, values: str) -> Axis:
         unit = unit or split(parts[1])[1]
         start, end = (_quantity(part, unit, dimension) for part in parts[:2])
         if not count.isdigit() or int(count) < 1:
-            raise UnitError(f'"{parts[2]}": how many values must be a whole number from 1 on')
+            raise UnitError(f'"{parts[2]}": the number of values must be a whole number, 1 or more')
         if int(count) > MOST:
             raise UnitError(f"{count} values are more than the {MOST} a sweep takes")
         if int(count) == 1 and start != end:
