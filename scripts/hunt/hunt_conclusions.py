@@ -71,7 +71,7 @@ def means(run: Trajectory, size: int) -> np.ndarray:
 
 def judge_steady(scene: Scene, note: Callable[[str], None]) -> Iterator[str]:
     cycle = ws.steady(scene)
-    size = 2 * teeth_of(scene) * TURNS * (15 if cycle.oscillations not in (1, teeth_of(scene)) else 1)
+    size = 2 * teeth_of(scene) * TURNS * (cycle.oscillations if cycle.oscillations not in (1, teeth_of(scene)) else 1)
     size = CARRIED if scene.body(roles(scene).oscillator or "").on else size  # a passing spring rides too, and turns nothing
     if not cycle.found:
         note(f"none: {cycle.verdict}")
