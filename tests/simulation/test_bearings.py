@@ -308,27 +308,108 @@ friction = 0.25
     )
 
 
-@pytest.mark.parametrize(("back", "centre"), [(0.0, 0.0), (0.6, 0.0), (0.6, 2e-3)])
-def test_an_impulse_rubs_in_the_bearing_by_its_size(tmp_path: Path, back: float, centre: float) -> None:
-    """In both phases μ r (Λ - m c Δω), c of the centre of mass: compression ends at one speed, expansion gives a share back."""
-    arm, grip, inertia, mass = 8e-3, 0.25 * 2e-3, 4e-8, 3e-4
+@pytest.mark.parametrize(
+    ("back", "centre", "radius"),
+    [(0.0, 0.0, 2e-3), (0.6, 0.0, 2e-3), (0.6, 2e-3, 2e-3), (0.0, 0.0, 0.1), (0.6, 0.0, 0.3)],
+)
+def test_an_impulse_rubs_in_the_bearing_by_its_size(tmp_path: Path, back: float, centre: float, radius: float) -> None:
+    """In both phases μ r (Λ - m c Δω), c of the centre of mass: compression ends at one speed, expansion gives a share back.
+
+    So it is where the impulse passes within the circle of friction, and load and friction, found in turn, never settle.
+    """
+    arm, grip, inertia, mass = 8e-3, 0.25 * radius, 4e-8, 3e-4
     turned = (arm + grip) / (inertia + grip * 1e-3 * centre)  # rad/s by N·s
     impulse = (1.0 + back) * arm * 30.0 / (arm * turned + 1.0 / mass)
-    scene = hammer(tmp_path, back, centre=centre)
-    run = ws.simulate(scene, 1e-3)
+    scene = hammer(tmp_path, back, radius, centre)
+    run = ws.simulate(scene, 1e-3 if radius < 0.05 else 1e-4)
     struck = run.events[run.events["kind"] == EventKind.IMPACT]
     assert len(struck) == 1
     after = run.u[np.searchsorted(run.t, struck["t"][0], side="right") - 1]
     assert struck["impulse_normal"][0] == pytest.approx(impulse, rel=3e-8)
     assert after == pytest.approx([-30.0 + turned * impulse, -impulse / mass], rel=3e-8)
     assert run.energy["residual_relative"] < 1e-12
-    stepped = ws.simulate(scene, 1e-3, method="moreau", step=1e-6)
+    stepped = ws.simulate(scene, run.simulated, method="moreau", step=1e-6)
     assert stepped.end_u == pytest.approx(run.end_u, rel=1e-5)
 
 
-def test_what_jams_in_its_bearing_ends_the_run_with_the_reason(tmp_path: Path) -> None:
-    """The force on the arm passes within the circle of friction: the harder it rubs, the harder it is pressed."""
-    run = ws.simulate(hammer(tmp_path, 0.0, 100e-3), 1e-3)
+# Where a force passes within the circle of friction, pressing on a body that turns slows it down: it locks by itself.
+
+TURNING, LIGHT, HEAVY = 30.0, 1e-4, 1e-3  # rad/s of the arm; kg of a block with which it goes on, and of one that stops it
+
+
+def pushed(folder: Path, mass: float, press: float, centre: float = 0.0) -> Scene:
+    """An arm of 8 mm on a pivot with a circle of friction of 25 mm turns before a block with its speed, pushed by `press`."""
+    return written(
+        folder,
+        f"""[bodies.arm]
+polygon = [["0 mm", "1 mm"], ["8 mm", "0 mm"], ["7 mm", "2 mm"], ["0 mm", "2 mm"]]
+mass = "1 g"
+inertia = "4e-8 kg·m²"
+centre_of_mass = ["{centre} m", "0 m"]
+angle = "-90°"
+velocity = "{TURNING} rad/s"
+[bodies.block]
+motion = "slide"
+axis = [1, 0]
+velocity = "{8e-3 * TURNING} m/s"
+line = [["0 m", "-20 mm"], ["0 m", "20 mm"]]
+mass = "{mass} kg"
+[[torques]]
+body = "block"
+value = "{press} N"
+[[contacts]]
+between = ["arm", "block"]
+[[bearings]]
+body = "arm"
+radius = "100 mm"
+friction = 0.25
+""",
+    )
+
+
+def driven_back(t: float, y: np.ndarray) -> list[float]:
+    """(ω, α) of the arm with the light block: (l cos φ - μ r) F = J α, m d²(l sin φ)/dt² = f - F, φ from its start."""
+    arm, inertia, press = 8e-3, 4e-8, 0.05
+    c, s = arm * math.cos(y[0]), arm * math.sin(y[0])
+    return [y[1], (press + LIGHT * s * y[1] ** 2) / (LIGHT * c + inertia / (c - 25e-3))]
+
+
+def test_a_light_body_that_pushes_within_the_circle_of_friction_is_slowed(tmp_path: Path) -> None:
+    """1/m > l (μ r - l)/J: forces exist, and what is pushed forward goes slower."""
+    scene, end = pushed(tmp_path, LIGHT, 0.05), 8e-4
+    exact = solve_ivp(driven_back, (0.0, end), [0.0, TURNING], "DOP853", rtol=1e-13, atol=1e-15).y[:, -1]
+    run = ws.simulate(scene, end)
+    assert run.counts["jams"] == 0 and exact[1] < 0.3 * TURNING
+    assert run.end_q[0] + 0.5 * math.pi == pytest.approx(exact[0], rel=1e-9)
+    assert run.end_u[0] == pytest.approx(exact[1], rel=1e-9)
+    assert run.energy["residual_relative"] < 1e-10
+    misses = [abs(ws.simulate(scene, end, method="moreau", step=h).end_u[0] - exact[1]) for h in (4e-6, 2e-6, 1e-6)]
+    assert misses[2] < 0.4 * misses[0] and misses[2] < 1e-3 * TURNING
+
+
+def test_a_heavy_body_that_pushes_within_the_circle_of_friction_stops_dead(tmp_path: Path) -> None:
+    """1/m < l (μ r - l)/J: no finite force keeps them apart. The impulse m v stops both, and the push no longer moves them."""
+    scene = pushed(tmp_path, HEAVY, 0.05)
+    run = ws.simulate(scene)
+    before = 0.5 * (4e-8 + HEAVY * 8e-3**2) * TURNING**2
+    struck = run.events[run.events["kind"] == EventKind.IMPACT]
+    assert run.stop.name == "DURATION" and run.counts["jams"] == 1 and len(struck) == 1
+    assert struck["t"][0] == 0.0 and struck["impulse_normal"][0] == pytest.approx(HEAVY * 8e-3 * TURNING, rel=1e-12)
+    assert run.energy["dissipated"]["damping"] == pytest.approx(before, rel=1e-12)  # all of it in the bearing
+    assert not run.end_u.any() and run.energy["residual_relative"] < 1e-12
+    stepped = ws.simulate(scene, 1e-3, method="moreau", step=1e-6)
+    assert stepped.end_q == pytest.approx(run.end_q, abs=1e-6) and stepped.end_u == pytest.approx([0.0, 0.0], abs=1e-12)
+
+
+def test_a_body_that_is_pulled_away_goes_on(tmp_path: Path) -> None:
+    """Both stopping and parting obey the laws then: what needs no impulse happens."""
+    run = ws.simulate(pushed(tmp_path, HEAVY, -0.05), 1e-3)
+    assert run.counts["jams"] == 0 and run.end_u == pytest.approx([TURNING, 8e-3 * TURNING - 50.0 * 1e-3], rel=1e-12)
+
+
+def test_a_rotor_that_its_own_centrifugal_force_jams_ends_the_run_with_the_reason(tmp_path: Path) -> None:
+    """Its circle of friction is larger than J/(m c): the harder it is slowed, the harder it presses."""
+    run = ws.simulate(pushed(tmp_path, HEAVY, -0.05, centre=4e-3), 1e-3)
     assert run.stop.name == "BEARING_JAMS" and "passes nearer to the pivot" in str(run.stop.sentence)
 
 

@@ -7,6 +7,7 @@ of contacts and of bearings with dry friction (`decide_modes`; Pfeiffer & Glocke
 from __future__ import annotations
 
 from watchsim.contact.gaps import BACKWARD, FORWARD, OPEN, STICK
+from watchsim.dynamics.coupled_loads import bound_found, fill_coupled, read_coupled, trace_loads
 from watchsim.dynamics.delassus import apply, fill_bearings, fill_delassus, inverse_mass, own_acceleration
 from watchsim.dynamics.friction import (
     add_element,
@@ -135,28 +136,31 @@ def decide_modes(model, closed, m, bearings, speed_zero, system, problem, out_gr
 
     Contacts whose |g_T_dot| is below `speed_zero` may stick; the others slide as they do. Sets modes and grips, fills `system`
     and adds to `system.h` the dry friction of the bearings that begin to move. False: no finite force keeps the bodies apart
-    (Painlevé's paradox, if a contact slides).
+    (Painlevé's paradox, if a contact slides). In a coupled problem `problem.last.sliders` moving bearings follow in the list.
     """
     for i in range(len(model.coordinates)):
         system.inverse[i] = inverse_mass(model.coordinates[i])
     _pose(model, closed, m, system)
-    fill_bearings(closed, m, problem.bearing, bearings, system.inverse, system.G)
-    for p in range(bearings):
+    rows = bearings + problem.last.sliders  # whose loads are solved with the rest: they have no element
+    fill_bearings(closed, m, problem.bearing, rows, system.inverse, system.G)
+    for p in range(rows):
         i, row = problem.bearing[p], 2 * m + p
         system.b[row] = system.h[i] * system.inverse[i]
         system.size[row] = abs(system.b[row])
+    if problem.last.coupled:
+        trace_loads(model, closed, m, rows, 1.0, system, problem)
     problem.begun[:m] = STICK
     elements, begins = -1, True
     while begins:
         elements = _solve(model, closed, m, bearings, speed_zero, system, problem)
         if elements < 0:
             return False
-        begins = _begin_sliding(model, closed, m, elements, bearings, system, problem)
+        begins = _begin_sliding(model, closed, m, elements, rows, system, problem)
     for i in range(m):
         if problem.x[i] > 0.0 and _slides_into_jam(system, m, i, problem):
             return False
     for i in range(m):
-        out_mode[closed.ids[i]] = _mode_of(closed, i, m, elements, bearings, system, problem)
+        out_mode[closed.ids[i]] = _mode_of(closed, i, m, elements, rows, system, problem)
     for i in range(m):
         if out_mode[closed.ids[i]] == OPEN:
             system.force[2 * i], system.force[2 * i + 1] = 0.0, 0.0
@@ -169,16 +173,26 @@ def _solve(model, closed, m, bearings, speed_zero, system, problem):
     """Pose the problem and solve it, forces into `system.force`; returns the number of elements, -1 without a solution."""
     elements = _elements(model, closed, m, bearings, speed_zero, system, problem)
     choose_signs(system.G, system.b, m, 2 * m + bearings, elements, problem)
-    fill_matrix(system.G, m, elements, problem)
-    load_bearings(system.G, system.b, m, elements, bearings, problem)
-    fill_rhs(problem.loaded, m, elements, problem)
+    coupled, sizes = problem.last.coupled == 1, (elements, bearings + problem.last.sliders, bearings)
+    if coupled:
+        problem.pivots.base[:] = 0.0
+        fill_coupled(system.G, system.b, m, sizes, problem)
+    else:
+        fill_matrix(system.G, m, elements, problem)
+        load_bearings(system.G, system.b, m, elements, bearings, problem)
+        fill_rhs(problem.loaded, m, elements, problem)
     pressed = press_unloaded(model, closed, m, system, problem)
     solver = solve_contacts(m, elements, bearings, Level.ACCELERATION, problem)
     if solver == Solver.FAILED:
         return -1
     if pressed:
         keep_basis(problem.loaded, m, elements, solver, problem)
-    read_forces(m, elements, problem, system.force)
+    if coupled:
+        read_coupled(m, sizes, problem, system.force)
+        for p in range(sizes[1]):
+            system.dry[problem.bearing[p]] = bound_found(m, p, system.force, problem.pivots)
+    else:
+        read_forces(m, elements, problem, system.force)
     return elements
 
 
@@ -270,7 +284,7 @@ def _mode_of(closed, i, m, elements, bearings, system, problem):
 @kernel
 def _decide_grips(m, bearings, problem, system, out_grip):
     """The grips of the bearings that stood; those held get no inverse mass, those that begin to move their friction."""
-    rows = 2 * m + bearings
+    rows = 2 * m + bearings + problem.last.sliders
     for p in range(bearings):
         i, row = problem.bearing[p], 2 * m + p
         moves = _row_acceleration(system, rows, row)
@@ -278,6 +292,9 @@ def _decide_grips(m, bearings, problem, system, out_grip):
         if abs(moves) > ACCELERATION_ROUNDING * terms:
             out_grip[i] = FORWARD if moves > 0.0 else BACKWARD
             system.h[i] -= out_grip[i] * system.dry[i]
+    for p in range(problem.last.sliders):
+        i = problem.bearing[bearings + p]
+        system.h[i] -= out_grip[i] * system.dry[i]
     for p in range(bearings):
         if out_grip[problem.bearing[p]] == STICK:
             system.inverse[problem.bearing[p]] = 0.0

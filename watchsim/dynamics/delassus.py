@@ -35,6 +35,9 @@ class ContactSystem(NamedTuple):
     arm: Array  # (n, 2) by bearing with a load: mass times the way from the pivot to the centre of mass, kg·m
     pull: Array  # (n, 2) what it carries without contacts and angular acceleration, N
     press: Array  # (n, 2) what it carries but for angular acceleration, N or N·s
+    poised: Array  # (n,) h before loads were sought, with the friction that goes with none
+    bare: Array  # (n, 2) loads with that friction, N
+    shares: Array  # (n, n, 2) loads of each by unit friction of each, N per N or N·m
 
 
 ContactSystemRef = by_reference(ContactSystem, __name__)
@@ -44,8 +47,10 @@ def contact_system(room: int, coordinates: int) -> ContactSystem:
     """For `room` closed contacts and as many bearings as coordinates."""
     n, rows = coordinates, 2 * room + coordinates
     lengths = {"h": n, "inverse": n, "b": rows, "size": rows, "normal_scale": room, "force": rows, "dry": n, "a": n}
-    parts = {name: np.zeros(length) for name, length in lengths.items()}
-    return ContactSystem(G=np.zeros((rows, rows)), **parts, **{name: np.zeros((n, 2)) for name in ("arm", "pull", "press")})
+    lengths["poised"] = n
+    parts: dict[str, Array] = {name: np.zeros(length) for name, length in lengths.items()}
+    parts |= {name: np.zeros((n, 2)) for name in ("arm", "pull", "press", "bare")}
+    return ContactSystem(G=np.zeros((rows, rows)), shares=np.zeros((n, n, 2)), **parts)
 
 
 @kernel

@@ -21,6 +21,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from watchsim.dynamics.bearings import Pivots, pivots
 from watchsim.dynamics.lcp import (
     LcpOutcome,
     LcpWork,
@@ -94,6 +95,9 @@ class LastProblem:
     level: int  # a Level
     lemke: int  # an LcpOutcome
     jammed: int  # 1: of the bearings no friction goes with the load that it makes
+    coupled: int  # 1: loads of bearings are solved with it, see coupled_loads.py
+    sliders: int  # bearings that move, in a coupled problem: behind those that may hold
+    seized: int  # 1: a bearing has jammed, and the impulses that stop it are to be found
 
 
 class KnownProblem(NamedTuple):
@@ -120,6 +124,7 @@ class FrictionProblem(NamedTuple):
 
     lcp: LcpWork
     known: KnownProblem
+    pivots: Pivots
     last: LastProblem
     solvers: Integers  # problems solved since last counted, by `Solver`; the last one counts those without a solution
     sizes: Integers  # the same problems by their number of unknowns, see `LARGEST`
@@ -155,7 +160,8 @@ def friction_problem(room: int, coordinates: int, lcp: LcpWork) -> FrictionProbl
     parts: dict[str, Any] = {name: np.zeros(length) for name, length in lengths.items()}
     parts |= {name: np.zeros(length, np.int64) for name, length in counts.items()}
     parts |= {name: np.zeros((side, side)) for name in ("A", "B")}
-    return FrictionProblem(lcp=lcp, last=blank(LastProblem), known=_known(side), friction_sign=np.ones(rows), **parts)
+    parts |= {"known": _known(side), "pivots": pivots(room, coordinates), "last": blank(LastProblem)}
+    return FrictionProblem(lcp=lcp, friction_sign=np.ones(rows), **parts)
 
 
 def _known(side: int) -> KnownProblem:

@@ -15,6 +15,16 @@ from numpy.typing import NDArray
 
 from watchsim.dynamics.acceleration import gap_accelerations
 from watchsim.dynamics.bearings import LOAD_ROUNDS, has_settled, lay_on, load_on, press_contacts, settled_share
+from watchsim.dynamics.coupled_loads import (
+    aim_first,
+    approach_seized,
+    fill_coupled,
+    keep_turning,
+    read_coupled,
+    starts,
+    trace_loads,
+    turn_to_loads,
+)
 from watchsim.dynamics.delassus import apply, contact_velocities, fill_bearings, fill_delassus, inverse_mass
 from watchsim.dynamics.friction import (
     add_element,
@@ -98,25 +108,35 @@ def impact(model, closed, m, restitution, jam_speed, system, problem, phases, ou
     contact_velocities(closed, m, out_u, phases.rates)
     _drop_rounding(closed, m, out_u, phases.rates)
     bearings = _struck_bearings(model, closed, m, out_u, system, problem, phases)
-    elements = _elements(model, closed, m, phases.rates, problem)
-    for number in range(LOAD_ROUNDS):
-        _bear(m, elements, bearings, problem, phases)
-        if not _compress(m, (elements, bearings), jam_speed, system.G, problem, phases):
-            return False
-        if _bearings_settle(model, closed, m, bearings, phases.impulse, number, system, problem, phases):
-            break
+    elements, last = _elements(model, closed, m, phases.rates, problem), problem.last
+    sizes, last.coupled = (elements, bearings), 0
+    if not last.seized:
+        for number in range(LOAD_ROUNDS):
+            _bear(m, elements, bearings, problem, phases)
+            if not _compress(m, sizes, jam_speed, system.G, problem, phases):
+                return False
+            if _bearings_settle(model, closed, m, bearings, phases.impulse, number, system, problem, phases):
+                break
+    if last.seized or last.jammed:
+        trace_loads(model, closed, m, bearings, 0.0, system, problem)
+        _couple(model, closed, m, (False, restitution, jam_speed), sizes, system.G, problem, phases)
     returns = False
     for i in range(m):
         returns = returns or (restitution[i] > 0.0 and phases.impulse[2 * i] > 0.0)
-    if returns and not problem.last.jammed:
+    if returns and not last.jammed:
+        last.coupled = 0
         for number in range(LOAD_ROUNDS):
-            if not _expand(model, closed, m, restitution, (elements, bearings), system.G, problem, phases):
+            if not _expand(model, closed, m, restitution, sizes, system.G, problem, phases):
                 return False
             if _bearings_settle(model, closed, m, bearings, phases.more, number, system, problem, phases):
                 break
+        if last.jammed:
+            trace_loads(model, closed, m, bearings, 0.0, system, problem)
+            _couple(model, closed, m, (True, restitution, jam_speed), sizes, system.G, problem, phases)
         for row in range(2 * m + bearings):
             phases.impulse[row] += phases.more[row]
-    if problem.last.jammed:
+    last.coupled = 0
+    if last.jammed:
         return False
     apply(closed, m, phases.impulse, system.inverse, out_u)
     for p in range(bearings):
@@ -184,6 +204,33 @@ def _bearings_settle(model, closed, m, bearings, impulse, number, system, proble
 
 
 @kernel
+def _couple(model, closed, m, phase, sizes, G, problem, phases):
+    """Find the impulses of a phase and the loads that they make as one; `problem.last.jammed` is 1 where there are none.
+
+    `phase`: (is it the expansion?, restitution, `jam_speed`).
+    """
+    (expands, restitution, jam_speed), (elements, bearings) = phase, sizes
+    last, found = problem.last, phases.more if expands else phases.impulse
+    last.coupled, last.jammed = 1, 1
+    for p in range(bearings):
+        problem.pivots.slides[p] = 0.0
+        add_element(problem, m + p, elements + p, (0.0, 0.0, 0.0))
+    turn_to_loads(m, bearings, found, problem)
+    for start in range(starts(m)):
+        aim_first(closed, m, bearings, start, problem)
+        for number in range(LOAD_ROUNDS):
+            if expands:
+                solved = _expand(model, closed, m, restitution, sizes, G, problem, phases)
+            else:
+                solved = _compress(m, sizes, jam_speed, G, problem, phases)
+            if not solved:
+                break
+            if has_settled(turn_to_loads(m, bearings, found, problem), number):
+                last.jammed = 0
+                return
+
+
+@kernel
 def _drop_rounding(closed, m, u, out_rates):
     """Make rates zero that are nothing but the rounding of their terms: where many contacts rest they contradict each other."""
     for i in range(m):
@@ -215,19 +262,30 @@ def _elements(model, closed, m, rates, problem):
 def _compress(m, sizes, jam_speed, G, problem, phases):
     """Impulses of the compression into `phases.impulse`; True if they are found. `sizes`: elements of contacts, bearings."""
     bearings, elements = sizes[1], sizes[0] + sizes[1]
+    coupled, all_sizes = problem.last.coupled == 1, (elements, bearings, bearings)
     choose_signs(G, phases.rates, m, 2 * m + bearings, elements, problem)
     if jam_speed > 0.0:
         raise_friction(G, m, problem)
-    fill_matrix(G, m, elements, problem)
-    load_bearings(G, phases.rates, m, elements, bearings, problem)
-    fill_rhs(problem.loaded, m, elements, problem)
+    if coupled:
+        problem.pivots.base[:] = 0.0
+        fill_coupled(G, phases.rates, m, all_sizes, problem)
+    else:
+        fill_matrix(G, m, elements, problem)
+        load_bearings(G, phases.rates, m, elements, bearings, problem)
+        fill_rhs(problem.loaded, m, elements, problem)
     # Where something approaches, a gap that stands still needs no perturbation, even one at exactly zero.
     perturbed = jam_speed > 0.0 and perturb_approach(phases.rates, m, jam_speed, problem)
     perturbed = _keep_sliding(G, phases.rates, m, problem) or perturbed
+    if coupled:
+        perturbed = keep_turning(G, phases.rates, m, all_sizes, problem) or perturbed
+        perturbed = (jam_speed > 0.0 and approach_seized(G, phases.rates, m, bearings, jam_speed, problem)) or perturbed
     solver = solve_contacts(m, elements, bearings, Level.COMPRESSION, problem)
     if perturbed and solver != Solver.FAILED:
         keep_basis(problem.loaded, m, elements, solver, problem)
-    read_forces(m, elements, problem, phases.impulse)
+    if coupled:
+        read_coupled(m, all_sizes, problem, phases.impulse)
+    else:
+        read_forces(m, elements, problem, phases.impulse)
     return solver != Solver.FAILED
 
 
@@ -289,8 +347,9 @@ def _expand(model, closed, m, restitution, sizes, G, problem, phases):
     Unknowns: Lambda_NP = Lambda_NE - eps_N Lambda_NC and the distance of Lambda_TE from the lower end of its interval.
     """
     sign, bearings, elements = problem.friction_sign, sizes[1], sizes[0] + sizes[1]
-    rows = 2 * m + bearings
-    _bear(m, sizes[0], bearings, problem, phases)
+    rows, coupled, all_sizes = 2 * m + bearings, problem.last.coupled == 1, (elements, bearings, bearings)
+    if not coupled:
+        _bear(m, sizes[0], bearings, problem, phases)
     for p in range(bearings):
         phases.more[2 * m + p] = sign[2 * m + p] * problem.shift[sizes[0] + p]
     for i in range(m):
@@ -312,6 +371,13 @@ def _expand(model, closed, m, restitution, sizes, G, problem, phases):
         row = element_row(problem, m, e)
         for i in range(m):
             phases.between[row] -= G[row, 2 * i + 1] * phases.offset[i]
+    if coupled:
+        for row in range(2 * m):
+            problem.pivots.base[row] = phases.more[row]
+        fill_coupled(G, phases.between, m, all_sizes, problem)
+        solver = solve_contacts(m, elements, bearings, Level.EXPANSION, problem)
+        read_coupled(m, all_sizes, problem, phases.more)
+        return solver != Solver.FAILED
     fill_matrix(G, m, elements, problem)
     fill_rhs(phases.between, m, elements, problem)
     solver = solve_contacts(m, elements, bearings, Level.EXPANSION, problem)

@@ -9,10 +9,22 @@ from __future__ import annotations
 
 import math
 
-from watchsim.contact.gaps import OPEN, STICK, contact_kinematics, place_body
+from watchsim.contact.gaps import BACKWARD, FORWARD, OPEN, STICK, contact_kinematics, place_body
 from watchsim.dynamics.acceleration import accelerate, solve_mode
-from watchsim.dynamics.bearings import LOAD_ROUNDS, begin_loads, has_settled, lay_on, press_contacts, rub
-from watchsim.dynamics.delassus import apply, drive_through_contacts, fill_delassus, own_acceleration
+from watchsim.dynamics.bearings import (
+    LOAD_ROUNDS,
+    begin_loads,
+    has_settled,
+    lay_on,
+    note_bare,
+    note_share,
+    poise,
+    press_contacts,
+    rub,
+    rub_shares,
+    share_friction,
+)
+from watchsim.dynamics.delassus import apply, copy, drive_through_contacts, fill_delassus, own_acceleration
 from watchsim.dynamics.forces import add_drag, add_loads, damping_power, drag_power, drive_power, forces
 from watchsim.dynamics.friction import jams
 from watchsim.dynamics.moving_frame import is_shaken
@@ -23,6 +35,7 @@ from watchsim.simulation.curb_pins import stay_on_side
 from watchsim.simulation.scratch import MONITORS
 from watchsim.tolerances import (
     DEPENDENT_IN_STEPS,
+    LOAD_ROUGH,
     LOOSE,
     PAINLEVE,
     PAINLEVE_WATCHED,
@@ -483,20 +496,46 @@ def settle_loads(model, regime, held, pose, closed, system, modes):
 
     `held`: (contacts in `regime.active`, lenience). `system` holds h and the inverse masses, and what `begin_loads` finds.
     """
-    contacts, lenience = held
+    copy(system.h, system.poised)
     for number in range(LOAD_ROUNDS):
-        accelerate(model, closed, 0, system, system.a)
-        lay_on(model, 1.0, system)
-        first = 0
-        while first < contacts:
-            m = place_contacts(model, regime.active, first, regime.upto[first], pose, closed)
-            solve_mode(model, closed, m, regime.mode, lenience, system, modes)
-            apply(closed, m, system.force, system.inverse, system.a)
-            press_contacts(model, closed, m, system.force, system)
-            first += m
+        _bear(model, regime, held, pose, closed, system, modes)
         if has_settled(rub(model, regime.grip, system), number):
             return True
-    return False
+    return len(model.bearings) <= len(modes.x) and _settle_as_one(model, regime, held, pose, closed, system, modes)
+
+
+@kernel
+def _bear(model, regime, held, pose, closed, system, modes):
+    """Accelerations and loads under `system.h` with the contacts in force."""
+    contacts, lenience = held
+    accelerate(model, closed, 0, system, system.a)
+    lay_on(model, 1.0, system)
+    first = 0
+    while first < contacts:
+        m = place_contacts(model, regime.active, first, regime.upto[first], pose, closed)
+        solve_mode(model, closed, m, regime.mode, lenience, system, modes)
+        apply(closed, m, system.force, system.inverse, system.a)
+        press_contacts(model, closed, m, system.force, system)
+        first += m
+
+
+@kernel
+def _settle_as_one(model, regime, held, pose, closed, system, modes):
+    """The same where the rounds do not settle: loads are linear in the frictions, see `share_friction`."""
+    poise(model, system)
+    _bear(model, regime, held, pose, closed, system, modes)
+    unit = note_bare(model, system)
+    for q in range(len(model.bearings)):
+        j = model.bearings[q].coordinate
+        system.h[j] -= unit if regime.grip[j] == FORWARD else (-unit if regime.grip[j] == BACKWARD else 0.0)
+        _bear(model, regime, held, pose, closed, system, modes)
+        system.h[j] = system.poised[j]
+        note_share(model, q, unit, system)
+    if not share_friction(model, system, modes):
+        return False
+    rub_shares(model, regime.grip, modes.x, system)
+    _bear(model, regime, held, pose, closed, system, modes)
+    return rub(model, regime.grip, system) <= LOAD_ROUGH
 
 
 @kernel

@@ -210,16 +210,19 @@ def resolve(model, state, island, m, options, scratch, record):
     next one: see `Verdict`.
     """
     work, event, exactly, jammed, hit = scratch.work, scratch.event, False, False, False
+    last, seizures = work.problem.last, 0
+    last.seized = 0
     for _ in range(ROUNDS):
         set_rate_zeros(event.closed, m, exactly, options, event.peak_speed, event.zero)
         if jammed or approaching(m, event.closed, event.zero):
             jam_speed = options.speed_zero if jammed else 0.0
             if not collide(model, state, island, m, options, jam_speed, scratch, record):
-                return Stop.BEARING_JAMS if work.problem.last.jammed else Stop.LCP_FAILED, 0
-            jammed, hit = False, not jammed
+                return Stop.BEARING_JAMS if last.jammed else Stop.LCP_FAILED, 0
+            jammed, hit, last.seized = False, not jammed, 0
         else:
             decision = decide(model, state, island, m, options, work.system, work.problem, event, state.regime.grip)
-            if work.problem.last.jammed:
+            seizures += last.jammed
+            if seizures > m + 1:  # impulses stop at least one bearing or contact each time, or nothing does
                 return Stop.BEARING_JAMS, 0
             verdict = judge(model, state, island, m, decision, (exactly, hit), options, scratch, record)
             if verdict == Verdict.HOLDS:
@@ -227,7 +230,8 @@ def resolve(model, state, island, m, options, scratch, record):
             if verdict == Verdict.FAILED:
                 return Stop.LCP_FAILED, 0
             exactly = exactly or verdict == Verdict.EXACTLY
-            jammed, hit = verdict == Verdict.JAMMED, hit and verdict != Verdict.ROUNDING
+            last.seized = 1 if verdict == Verdict.SEIZED else 0
+            jammed, hit = verdict in (Verdict.JAMMED, Verdict.SEIZED), hit and verdict != Verdict.ROUNDING
     return Stop.TOO_MANY_EVENTS, 0
 
 

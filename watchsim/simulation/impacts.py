@@ -72,7 +72,8 @@ def collide(model, state, island, m, options, jam_speed, scratch, record):
         ended, ends = True, max(ends, end)
     for i in range(len(state.u)):
         state.sums.damping -= 0.5 * work.phases.bearing[i] * (room.before[i] + state.u[i])
-    _write(model, state, m, jam_speed, event.closed, room, record, ended, ends)
+    jam = (jam_speed, work.problem.last.seized == 1)
+    _write(model, state, m, jam, event.closed, room, record, ended, ends)
     if jam_speed == 0.0 and may_be_chatter(m, options, event, room):
         _end_chatter(model, state, island, m, options, scratch, record)
     return True
@@ -108,8 +109,12 @@ def _solve(model, m, jam_speed, work, closed, room, out_u, out_counts):
 
 
 @kernel
-def _write(model, state, m, jam_speed, closed, room, record, ended, ends):
-    """Events and energy of the impact just solved; by contact, the loss is minus the impulse times the mean rate."""
+def _write(model, state, m, jam, closed, room, record, ended, ends):
+    """Events and energy of the impact just solved; by contact, the loss is minus the impulse times the mean rate.
+
+    `jam`: (`jam_speed`, has a bearing seized?).
+    """
+    jam_speed, seized = jam
     contact_velocities(closed, m, room.before, room.rates_before)
     contact_velocities(closed, m, state.u, room.rates)
     state.sums.drive += drive_through_contacts(model, closed, m, room.impulse, state.u)
@@ -127,7 +132,8 @@ def _write(model, state, m, jam_speed, closed, room, record, ended, ends):
         event.impulse_normal, event.impulse_tangential, event.energy_lost = room.impulse[N], room.impulse[T], lost
         state.sums.impacts += lost
         state.counts.impacts += 1
-        if jam_speed > 0.0 and abs(room.rates_before[N]) <= jam_speed < abs(room.rates_before[T]):
+        stops = seized or abs(room.rates_before[T]) > jam_speed
+        if jam_speed > 0.0 and abs(room.rates_before[N]) <= jam_speed and stops:
             keep_event(record, state.clock, state.counts, EventKind.JAM, k, -1, room.rates_before[T])
             state.counts.jams += 1
         if ended and room.restitution[i] == 0.0 and law_of(model, k).restitution > 0.0:

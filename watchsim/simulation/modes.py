@@ -12,6 +12,7 @@ from enum import IntEnum
 from watchsim.contact.gaps import BACKWARD, FORWARD, OPEN, STICK, gap_acceleration, place
 from watchsim.dynamics.acceleration import accelerate, decide_modes, solve_mode
 from watchsim.dynamics.bearings import LOAD_ROUNDS, begin_loads, has_settled, lay_on, press_contacts, rub
+from watchsim.dynamics.coupled_loads import aim_first, starts, turn_to_loads
 from watchsim.dynamics.delassus import fill_inverse, inverse_mass
 from watchsim.dynamics.forces import add_drag, forces, set_grips, stop_held
 from watchsim.dynamics.friction import LARGEST, law_of
@@ -45,7 +46,8 @@ class Verdict(IntEnum):
     ROUNDING = 2  # rounding of the impact was taken from velocities: decide again, and do not look for any again
     EXACTLY = 3  # take nothing but rounding for a gap rate of zero, and decide again
     JAMMED = 4  # no finite force holds sliding contacts apart (Painlevé): find the impulses that stop them
-    FAILED = 5
+    SEIZED = 5  # so in a bearing, whose friction grows faster than the load that it is to carry
+    FAILED = 6
 
 
 @kernel
@@ -67,7 +69,7 @@ def decide(model, state, island, m, options, system, problem, event, out_grip):
     counts are written. `problem.last.jammed`: no friction of the bearings goes with the load that it makes.
     """
     r = resting(model, m, event.closed, event.pose, event.zero, event.rest)
-    problem.last.jammed = 0
+    problem.last.jammed, problem.last.coupled, problem.last.sliders = 0, 0, 0
     begin_loads(model, state.clock.time, state.q, state.u, system)
     for number in range(LOAD_ROUNDS):
         forces(model, state.clock.time, state.q, state.u, system.h)
@@ -87,8 +89,46 @@ def decide(model, state, island, m, options, system, problem, event, out_grip):
         changed = rub(model, out_grip, system)
         if _hold(r, bearings, out_grip, system, problem) and has_settled(changed, number):
             return r, True
-    problem.last.jammed = 1
-    return r, False
+    return r, _decide_coupled(model, state, island, r, options, system, problem, event, out_grip)
+
+
+@kernel
+def _decide_coupled(model, state, island, r, options, system, problem, event, out_grip):
+    """The same where loads and forces, found in turn, do not settle: as one problem (coupled_loads.py). Is it solved?"""
+    last, rest = problem.last, event.rest
+    last.coupled, last.jammed = 1, 1
+    for start in range(starts(r)):
+        for number in range(LOAD_ROUNDS):
+            forces(model, state.clock.time, state.q, state.u, system.h)
+            set_grips(model, state.u, event.label, island, options, out_grip)
+            bearings = standing_bearings(event.label, island, out_grip, problem.bearing)
+            last.sliders = _moving_bearings(model, event.label, island, out_grip, bearings, system, problem)
+            add_drag(system.dry, out_grip, system.h)
+            if number == 0:
+                aim_first(rest, r, bearings + last.sliders, start, problem)
+            solved = decide_modes(model, rest, r, bearings, options.speed_zero, system, problem, out_grip, event.decided)
+            count_problems(problem, state.counts)
+            if not solved:
+                break
+            if has_settled(turn_to_loads(r, bearings + last.sliders, system.force, problem), number):
+                last.coupled, last.jammed, last.sliders = 0, 0, 0
+                return True
+    last.coupled, last.sliders = 0, 0
+    return False
+
+
+@kernel
+def _moving_bearings(model, label, island, grip, bearings, system, problem):
+    """List the island's moving bearings with a load behind those that stand, without friction yet; returns how many."""
+    problem.pivots.slides[:] = 0.0
+    count = 0
+    for k in range(len(model.bearings)):
+        i = model.bearings[k].coordinate
+        system.dry[i] = 0.0
+        if label[i] == island and (grip[i] == FORWARD or grip[i] == BACKWARD):
+            problem.bearing[bearings + count], problem.pivots.slides[bearings + count] = i, float(grip[i])
+            count += 1
+    return count
 
 
 @kernel
@@ -126,6 +166,10 @@ def judge(model, state, island, m, decision, terms, options, scratch, record):
     """
     (r, solved), (exactly, hit) = decision, terms
     event, system, rest = scratch.event, scratch.work.system, scratch.event.rest
+    if scratch.work.problem.last.jammed:
+        hold_gaps(model, r, options, system, event, scratch.projection, state.u)
+        replace(model, state.q, state.u, m, event)
+        return Verdict.SEIZED
     if stop_at_dead_centre(model, state, r, solved, system, event, record):
         replace(model, state.q, state.u, m, event)
         return Verdict.STOPPED

@@ -103,6 +103,7 @@ class MoreauWork(NamedTuple):
     u: Array  # after the impacts, before the forces
     free: Array  # with the forces, without contacts
     foreseen: Array  # velocities at the middle as the last step foresees them
+    bounds: Array  # of the friction of bearings with a load, in the round before
     start: Array  # coordinates at the start of the step
     before: Array  # velocities there, before impacts
     bend: Array  # accelerations of the step before
@@ -133,9 +134,23 @@ def moreau_work(model: Model) -> MoreauWork:
     rows = 2 * room + len(dry)
     vectors = {
         name: np.zeros(n)
-        for name in ("q", "u", "free", "force", "damping", "line", "mass", "inverse", "change", "foreseen", "start", "wound")
+        for name in (
+            "q",
+            "u",
+            "free",
+            "force",
+            "damping",
+            "line",
+            "mass",
+            "inverse",
+            "change",
+            "foreseen",
+            "start",
+            "wound",
+            "bounds",
+        )
     }
-    vectors |= {name: np.zeros(n) for name in ("before", "bend", "row_a", "row_jerk")}
+    vectors |= {name: np.zeros(n) for name in ("before", "bend", "row_a", "row_jerk", "bounds")}
     by_row = {name: np.zeros(rows) for name in ("rates", "more")}
     return MoreauWork(
         memory=np.zeros((len(model.contacts), 2)),

@@ -296,7 +296,7 @@ def friction_cones(model, m, u, options, work):
 # Bearings with a load are the first ones. The impulse of the force on a pivot is what its body's momentum changes by, less what
 # contacts, weight and springs do; the friction there is within grip times that, and both are found in turn.
 
-LOAD_SWEEPS, LOAD_STEADY = 50, 1e-12
+LOAD_SWEEPS, LOAD_STEADY, LOAD_PACES = 50, 1e-12, 6
 
 
 @kernel
@@ -339,12 +339,19 @@ def _settle_impact(model, state, m, work):
     for k in range(bearings):
         work.laws.ends[m + k, 0], work.laws.ends[m + k, 2], work.laws.P[2 * m + k] = 0.0, 0.0, 0.0
     work.foreseen[:] = 0.0
-    for _ in range(LOAD_SWEEPS):
+    for number in range(LOAD_PACES * LOAD_SWEEPS):
         solve_percussions(state, m, bearings, work)
         work.change[:] = 0.0
         push(work, m, bearings, work.laws.P, work.change)
+        for k in range(bearings):
+            work.bounds[k] = work.laws.ends[m + k, 2]
         if within_loads(model, m, (0.0, 0.0), work.laws.P, work.foreseen, work.change, work):
             return
+        # Where a force passes within the circle of friction full changes overshoot ever further; smaller ones settle.
+        pace = 0.5 ** (number // LOAD_SWEEPS)
+        for k in range(bearings):
+            most = work.bounds[k] + pace * (work.laws.ends[m + k, 2] - work.bounds[k])
+            work.laws.ends[m + k, 0], work.laws.ends[m + k, 2] = -most, most
 
 
 @kernel

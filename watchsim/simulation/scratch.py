@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.contact.gaps import OPEN, STICK, Closed, ClosedRef, circles_around, closed_contacts, poses
+from watchsim.dynamics.bearings import PivotsRef
 from watchsim.dynamics.delassus import ContactSystem, ContactSystemRef, contact_system
 from watchsim.dynamics.friction import FrictionProblem, FrictionProblemRef, KnownProblemRef, friction_problem, problem_size
 from watchsim.dynamics.impact import ImpactPhases, ImpactPhasesRef, impact_phases
@@ -179,7 +180,7 @@ def contact_work_by_reference(work):
     return ContactWorkRef(
         ContactSystemRef(*work.system),
         ModeSystemRef(FreeForcesRef(LcpWorkRef(*modes.redundant.lcp), *modes.redundant[1:]), *modes[1:]),
-        FrictionProblemRef(LcpWorkRef(*problem.lcp), KnownProblemRef(*problem.known), *problem[2:]),
+        FrictionProblemRef(LcpWorkRef(*problem.lcp), KnownProblemRef(*problem.known), PivotsRef(*problem.pivots), *problem[3:]),
         ImpactPhasesRef(*work.phases),
     )
 
