@@ -139,6 +139,9 @@ class Bearing:
 
     With `play` (m) the pivot is a shaft in a hole so much wider, in which it rolls and slides; at the start in its middle, or
     where it touches the hole in the direction `side` (rad).
+
+    Reading a scene file checks that the load of the body is known: that it carries nothing, is geared to nothing without a
+    load, and has no other bearing. `dataclasses.replace(scene, bearings=...)` does not; `Scene.set` does.
     """
 
     body: str
