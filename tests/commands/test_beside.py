@@ -23,6 +23,7 @@ SAME = ("events.csv", "beats.csv", "phases.csv", "plots/kinematics.png", "plots/
 PLOT = "plots/last_beats.png"
 COMMAND = """
 import os, signal, sys
+signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored where the tests run in the background
 case, *sys.argv[1:] = sys.argv[1:]
 os.sched_getaffinity = lambda _: {0} if case == "one core" else {0, 1}
 from watchsim.render import kinematics_plot
