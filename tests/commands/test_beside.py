@@ -91,7 +91,7 @@ def test_the_copy_goes_with_the_run(number: signal.Signals, tmp_path: Path) -> N
         os.kill(child, number) if number == signal.SIGINT else None
         process.send_signal(number)
         time.sleep(0.2)
-    _, errors = process.communicate(timeout=120)
+    _, errors = process.communicate(timeout=20)
     assert "Traceback" not in errors and process.returncode != 0
     for _ in range(100):
         if not Path(f"/proc/{child}/cmdline").exists() or not Path(f"/proc/{child}/cmdline").read_bytes():

@@ -280,8 +280,8 @@ def test_a_contact_and_the_bearing_that_it_loads_are_solved_as_one(tmp_path: Pat
     assert taken == pytest.approx(run.energy["dissipated"]["damping"], abs=1e-14, rel=1e-6)
 
 
-def hammer(folder: Path, back: float, radius: float = 2e-3, centre: float = 0.0) -> Scene:
-    """An arm that turns at 30 rad/s strikes a block of 0.3 g that lies before it, 8 mm from its pivot."""
+def arm_and_block(folder: Path, turning: float, radius: float, centre: float, mass: float, block: str, contact: str) -> Scene:
+    """An arm that turns at so many rad/s on a pivot of that radius (m) meets a block 8 mm from it; lines for both."""
     return written(
         folder,
         f"""[bodies.arm]
@@ -290,22 +290,28 @@ mass = "1 g"
 inertia = "4e-8 kg·m²"
 centre_of_mass = ["{centre} m", "0 m"]
 angle = "-90°"
-velocity = "-30 rad/s"
+velocity = "{turning} rad/s"
 [bodies.block]
 motion = "slide"
 axis = [1, 0]
-position = ["-1e-9 m", "0 m"]
 line = [["0 m", "-20 mm"], ["0 m", "20 mm"]]
-mass = "0.3 g"
+mass = "{mass} kg"
+{block}
 [[contacts]]
 between = ["arm", "block"]
-restitution = {back}
+{contact}
 [[bearings]]
 body = "arm"
 radius = "{radius} m"
 friction = 0.25
 """,
     )
+
+
+def hammer(folder: Path, back: float, radius: float = 2e-3, centre: float = 0.0) -> Scene:
+    """The arm at 30 rad/s strikes a block of 0.3 g that lies before it."""
+    block, contact = 'position = ["-1e-9 m", "0 m"]', f"restitution = {back}"
+    return arm_and_block(folder, -30.0, radius, centre, 3e-4, block, contact)
 
 
 @pytest.mark.parametrize(
@@ -338,33 +344,9 @@ TURNING, LIGHT, HEAVY = 30.0, 1e-4, 1e-3  # rad/s of the arm; kg of a block with
 
 
 def pushed(folder: Path, mass: float, press: float, centre: float = 0.0) -> Scene:
-    """An arm of 8 mm on a pivot with a circle of friction of 25 mm turns before a block with its speed, pushed by `press`."""
-    return written(
-        folder,
-        f"""[bodies.arm]
-polygon = [["0 mm", "1 mm"], ["8 mm", "0 mm"], ["7 mm", "2 mm"], ["0 mm", "2 mm"]]
-mass = "1 g"
-inertia = "4e-8 kg·m²"
-centre_of_mass = ["{centre} m", "0 m"]
-angle = "-90°"
-velocity = "{TURNING} rad/s"
-[bodies.block]
-motion = "slide"
-axis = [1, 0]
-velocity = "{8e-3 * TURNING} m/s"
-line = [["0 m", "-20 mm"], ["0 m", "20 mm"]]
-mass = "{mass} kg"
-[[torques]]
-body = "block"
-value = "{press} N"
-[[contacts]]
-between = ["arm", "block"]
-[[bearings]]
-body = "arm"
-radius = "100 mm"
-friction = 0.25
-""",
-    )
+    """The arm on a pivot with a circle of friction of 25 mm turns before a block with its speed, pushed by `press`."""
+    block = f'velocity = "{8e-3 * TURNING} m/s"\n[[torques]]\nbody = "block"\nvalue = "{press} N"'
+    return arm_and_block(folder, TURNING, 0.1, centre, mass, block, "")
 
 
 def driven_back(t: float, y: np.ndarray) -> list[float]:
