@@ -251,7 +251,8 @@ def _receive(given: queue.SimpleQueue[Any]) -> None:
 # A cluster has a scheduler that somebody has started, and workers on which this package is installed. Workers may come and go:
 # a point whose worker has gone is computed again by another one.
 
-AHEAD = 3  # points handed out per worker before one is finished
+AHEAD = 3  # batches handed out per thread of a worker before one is finished
+BATCH = 1.0  # s that the points of a batch take: each batch costs the cluster and this process some ms
 TIMEOUT = 10.0  # s to reach the scheduler
 RECOUNT = 2.0  # s between looks at how many workers there are
 PATIENCE = 60.0  # s without any worker
@@ -282,29 +283,31 @@ class Cluster:
         if self._client.status == "closed":  # by the end of an earlier question
             self._client = self._distributed.Client(self._address, timeout=TIMEOUT, set_as_default=False)
         waiting, asked = list(reversed(points)), pickle.dumps(question)
-        under_way: dict[Any, Any] = {}  # what was promised -> its point
+        under_way: dict[Any, list[tuple[int, Mapping[str, Value]]]] = {}  # what was promised -> its points
         threads, counted = 0, -math.inf
+        size = 1  # points of a batch
         try:
             while (waiting or under_way) and not interrupted():
                 if time.monotonic() - counted > RECOUNT or not under_way:
                     threads, counted = self._threads(interrupted), time.monotonic()
-                room = AHEAD * threads - len(under_way)
-                for _ in range(min(room, len(waiting))):
-                    number, changes = waiting.pop()
+                while waiting and len(under_way) < AHEAD * threads:
+                    many = min(size, -(-len(waiting) // (AHEAD * threads)))  # towards the end fewer, so that none is idle
+                    batch = [waiting.pop() for _ in range(many)]
                     # With the question in each: what lies on a worker for all of them is lost with that worker.
-                    future = self._client.submit(_work, number, asked, dict(changes), pure=False)
-                    under_way[future] = number, changes
+                    future = self._client.submit(_work, asked, batch, pure=False)
+                    under_way[future] = batch
                 done = [future for future in under_way if future.done()]
                 for future in done:
                     if future.status in GONE:
-                        waiting.append(under_way.pop(future))
+                        waiting += reversed(under_way.pop(future))
                         continue
                     try:
-                        made = future.result(timeout=GATHERED)
+                        made, seconds = future.result(timeout=GATHERED)
                     except (self._distributed.CancelledError, self._distributed.TimeoutError):
                         continue  # its worker has gone since: it is cancelled now, or computed again
                     del under_way[future]
-                    yield made
+                    size = max(1, int(BATCH * len(made) / max(seconds, 1e-3)))
+                    yield from made
                 if not done:
                     time.sleep(POLL)
             self._client.cancel(list(under_way))
@@ -337,9 +340,10 @@ class Cluster:
         return WorkersLost(f"the scheduler at {self._address} was lost and has not come back")
 
 
-def _work(number: int, asked: bytes, changes: dict[str, float | str]) -> tuple[int, Row]:
-    """What a worker of the cluster does."""
-    return number, answer(_question(asked), changes)
+def _work(asked: bytes, batch: Points) -> tuple[list[tuple[int, Row]], float]:
+    """What a worker of the cluster does; with the seconds it took."""
+    question, begin = _question(asked), time.monotonic()
+    return [(number, answer(question, changes)) for number, changes in batch], time.monotonic() - begin
 
 
 @functools.lru_cache(maxsize=2)
