@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import math
 import re
@@ -12,6 +13,7 @@ import pytest
 
 import watchsim as ws
 import watchsim.studies.improve as improving
+import watchsim.studies.tolerance as tolerances
 from watchsim.cli import main
 from watchsim.scene.errors import SceneError
 from watchsim.scene.load import changed
@@ -144,6 +146,30 @@ def test_ten_starts_end_in_the_same_design():
 def test_a_yield_needs_tolerances(tmp_path):
     with pytest.raises(SceneError, match="no \\[tolerances\\]"):
         ws.improve(scene_of(tmp_path, DECAY), {"bodies.wheel.inertia": None}, "inertia max", ["yield >= 99 %"])
+
+
+SPREAD = DECAY + '[expect]\nperiod = { max = "0.2 s" }\n[tolerances]\n"bodies.wheel.inertia" = { limits = "±0.1 g·mm²" }\n'
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("limit", "spare"), [(75.0, 0.05), (50.0, 0.0)])
+def test_a_limit_on_a_yield(limit, spare, tmp_path):
+    """The largest inertia of which so many of 100 that spread evenly by ±0.1 keep a period; of 50 the limit on the nominal
+    period alone keeps it, and a single yield shows that."""
+    vary, largest = {"bodies.wheel.inertia": ("2 g·mm²", "4 g·mm²")}, 3e-6 * (0.2 / math.tau) ** 2
+    keep = ["period <= 0.2 s", f"yield >= {limit:g} %"]
+    found = ws.improve(scene_of(tmp_path, SPREAD), vary, "inertia max", keep, duration=0.5)
+    assert found.found and found.values["yield_percent"][1] >= limit
+    assert found.keys["bodies.wheel.inertia"][1] == pytest.approx(largest - spare * 1e-9, abs=6e-12)
+
+
+def test_a_yield_that_is_interrupted_ends_the_search(tmp_path, monkeypatch):
+    """It was a design without a yield, and the search went on to a wrong conclusion."""
+    scene, real = scene_of(tmp_path, SPREAD), tolerances.made
+    monkeypatch.setattr(improving, "SAMPLES", 16)
+    monkeypatch.setattr(tolerances, "made", lambda *a, **k: dataclasses.replace(real(*a, **k), whole=False))
+    with pytest.raises(KeyboardInterrupt):
+        ws.improve(scene, {"bodies.wheel.inertia": ("2 g·mm²", "4 g·mm²")}, "inertia max", ["yield >= 99 %"], duration=0.5)
 
 
 @pytest.mark.slow

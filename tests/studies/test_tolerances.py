@@ -11,7 +11,9 @@ import pytest
 import watchsim as ws
 from watchsim.cli import main
 from watchsim.scene.load import changed
+from watchsim.studies.point import answer
 from watchsim.studies.tolerance import finished, sample_scene
+from watchsim.studies.tolerance_plan import plan_of
 
 TABLE = """
 [tolerances]
@@ -285,3 +287,15 @@ def test_teeth_grown_and_moved_are_where_they_are_expected():
     assert sum(tip > 1e-9 for tip in tips) * 15 == pytest.approx(len(tips), abs=15)
     taken = changed(scene, {"bodies.lever.play": 8e-6, "bodies.lever.side": 0.5 * math.pi}).body("lever").position
     assert taken[1] - scene.body("lever").position[1] == pytest.approx(4e-6, rel=1e-9)
+
+
+@pytest.mark.parametrize(("lock", "number", "works"), [("2.2°", 13, False), ("3°", 3, True)])
+def test_a_sample_that_cannot_stand_where_the_drawing_does_is_judged_by_its_motion(lock, number, works, tmp_path):
+    """With a lock of 2.2° this one reaches its other bank before the tooth is let off: at the amplitude of the drawing its dart
+    would lie within the safety roller, and it was called impossible. With 3° a nudged watch overlaps by 0.7 µm at the start,
+    and the whole study was refused.
+    """
+    assert main(["new", "swiss_lever", "--lock", lock, "-o", str(tmp_path / "new")]) == 0
+    plan = plan_of(ws.load(tmp_path / "new"))
+    row = answer(plan.question, plan.changes([number])[0])
+    assert (row["verdict"], row["amplitude_deg"] is not None) == (("ticks", True) if works else ("stops", False))

@@ -58,7 +58,7 @@ def options(parser: argparse.ArgumentParser) -> None:
         "--tol", "--tolerance", metavar="X", type=float, help="relative error per step (default: the scene's, 1e-9)"
     )
     parser.add_argument(
-        "--workers", metavar="N", type=int, default=1, help="processes; more than one pays off with differential-evolution"
+        "--workers", metavar="N", type=int, help="processes (default: 1; of a yield as many as there are processors)"
     )
     parser.add_argument("--scheduler", metavar="ADDRESS", help="of dask.distributed, such as tcp://127.0.0.1:8786")
     parser.add_argument("--force", action="store_true", help="replace a folder that exists")
@@ -67,7 +67,8 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     from watchsim.commands.inputs import load_scene, secured_folder
-    from watchsim.studies.improve import improve
+    from watchsim.studies.improve import YIELD, improve
+    from watchsim.studies.sweep import processors
     from watchsim.units import TIME
 
     check_tolerance(args.tol)
@@ -75,7 +76,7 @@ def run(args: argparse.Namespace) -> int:
     folder = None if args.output is None else Path(args.output)
     if folder is not None and folder.is_dir() and any(folder.iterdir()) and not args.force:
         wrong.append(f"-o {folder}: exists already. Choose another folder, or replace what is there with --force.")
-    if args.workers < 1:
+    if args.workers is not None and args.workers < 1:
         wrong.append(f"--workers {args.workers}: at least one process is needed.")
     if wrong:
         raise InputError("\n".join(wrong))
@@ -84,11 +85,12 @@ def run(args: argparse.Namespace) -> int:
     if folder is not None:
         secured_folder(folder, "the better scene")
     announce_compile()
+    workers = args.workers or (processors() if any(YIELD.name in one for one in (*args.goal, *args.keep)) else 1)
     progress = Progress("designs evaluated:")
     try:
         better = improve(
             scene, knobs, args.goal, args.keep, method=args.method, starts=args.starts, points=args.points, duration=duration,
-            tolerance=args.tol, workers=args.workers, scheduler=args.scheduler, progress=lambda n: progress(n, math.inf),
+            tolerance=args.tol, workers=workers, scheduler=args.scheduler, progress=lambda n: progress(n, math.inf),
         )  # fmt: skip
     finally:
         progress.close()

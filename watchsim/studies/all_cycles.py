@@ -21,6 +21,7 @@ from watchsim.analysis.timing import DAY, Averages, averages, beats
 from watchsim.analysis.verdict import verdict
 from watchsim.analysis.verdict_kinds import STOPS, TICKS, UNSETTLED
 from watchsim.dynamics.forces import stored_energy
+from watchsim.scene.errors import SceneError
 from watchsim.scene.scene import Recording
 from watchsim.simulation.runner import Run, trajectory_of
 from watchsim.simulation.state import NO_CONTACT, State, Stop, write_state
@@ -48,8 +49,11 @@ def run_from(loop: Loop, state: State | None, duration: float) -> Trajectory:
     run = Run(loop.scene, loop.compiled, loop.tolerance, Recording())
     run.warm_up()
     if state is None:
-        run.begin()
-    else:
+        try:
+            run.begin()
+        except SceneError:
+            state = loop.begin()  # which gives way by a little
+    if state is not None:
         write_state(run.state, state)
         run.stored_at_start = float(stored_energy(run.compiled.model, run.state.q, run.state.u))
     stop = run.to_the_end(duration, None)

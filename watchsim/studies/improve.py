@@ -5,6 +5,10 @@ derivatives by central differences between limit cycles; where that finds no sta
 simplex from the best design seen. Designs that do not tick, or cannot be drawn, count as worse than any that do, the more so
 the further they lie from the best one: they turn the search back and end it nowhere. Of several goals a front: one is made
 best while the others are held at levels between their extremes.
+
+A yield takes hundreds of limit cycles, so a limit on it is left out at first: the best design without it mostly keeps it, which
+one yield shows. Else the simplex goes on from there. As a share of samples a yield has steps, so its derivatives are taken over
+wide differences.
 """
 
 from __future__ import annotations
@@ -59,6 +63,7 @@ STATIONARY = 1e-3  # of the gradient: what multipliers may leave of it
 EXACT = 1e-10  # SLSQP stops at such a change of the scaled goal
 ROUNDS = 60  # of SLSQP
 SIMPLEX, MOVES = 0.05, 60  # of a range; evaluations for each number
+YIELDS = 0.02, 0.25, 2e-3  # where there is a yield, of a range: central differences, the first simplex and the last one
 POPULATION, GENERATIONS = 8, 25  # of differential evolution, for each number
 PENALTY = 100.0  # on what is broken, in Nelder and Mead's merit
 TRIES = 64  # designs that are looked at for one that ticks
@@ -128,12 +133,20 @@ def improve(  # noqa: PLR0913 - options, by name
     drawn = any(one.output == YIELD for one in (*goals, *keeps))
     if drawn and not scene.tolerances:
         faults.append(Fault("yield", "this scene has no [tolerances], so every watch is the nominal one", place=PLACE))
-    if drawn and method == "auto":
-        method = "nelder-mead"  # a share of samples has steps, and no derivatives
     check(varied, goals, keeps, faults)
-    search = Search(scene, varied, goals, keeps, chosen(workers, scheduler), tolerance, duration, progress)
-    search.workers = workers
-    return search.result(method, starts, points)
+    executor = chosen(workers, scheduler)
+    search = Search(scene, varied, goals, keeps, executor, tolerance, duration, progress)
+    plain = [one for one in keeps if one.output != YIELD]
+    held = [one.way for one in keeps if one.output == YIELD]
+    if held and EQUAL not in held and len(goals) == 1 and goals[0].output != YIELD:
+        without = Search(scene, varied, goals, tuple(plain), executor, tolerance, duration, progress)
+        first = without.result(method, starts, points)
+        if first.found:
+            whole = search.with_yield(first)
+            if whole is not None:
+                return whole
+            search.near(first)
+    return search.result("nelder-mead" if drawn and method == "auto" else method, starts, points)
 
 
 class Search:
@@ -150,7 +163,7 @@ class Search:
         duration: float | None = None,
         progress: Callable[[int], None] | None = None,
     ) -> None:
-        self.begun, self.original, self.workers = time.perf_counter(), scene, 1
+        self.begun, self.original = time.perf_counter(), scene
         self.knobs, self.goals, self.keeps, self.executor, self.progress = knobs, goals, keeps, executor, progress
         self.motion, self.function = needs((*goals, *keeps))
         self.outputs = tuple({one.output.name: one.output for one in (*goals, *keeps)}.values())
@@ -175,6 +188,28 @@ class Search:
         self.limits = tuple(self._limit(one) for one in (*goals, *keeps) if not one.is_goal)
         self.ends = tuple((self._index(one), -1.0 if one.way == MOST else 1.0) for one in goals if one.is_goal)
         self.scale = np.ones(len(self.outputs))
+        drawn = YIELD in self.outputs
+        self.step, self.simplex, self.nearest = YIELDS if drawn else (STEP, SIMPLEX, NEAR)
+        self.exact = math.inf if drawn else EXACT
+        self.first = self.start  # where the search begins
+
+    # What a yield says of the design that is best without it
+
+    def near(self, found: Better) -> None:
+        """Begin with that design."""
+        values = np.array([found.keys[one.key][1] for one in self.knobs])
+        self.first = np.ascontiguousarray(np.clip((values - self.low) / self.range, 0.0, 1.0))
+
+    def with_yield(self, found: Better) -> Better | None:
+        """The same with the yields, old and new; None where the new one breaks a limit."""
+        new = self._yield({key: value for key, (_, value) in found.keys.items()})
+        room = [(new - one.value) * (-1.0 if one.way == BELOW else 1.0) for one in self.keeps if one.output == YIELD]
+        if not min(room) >= 0.0:
+            return None
+        moved = any(not one.low <= one.value <= one.high for one in self.knobs)
+        old = math.nan if moved else self._yield({one.key: one.value for one in self.knobs})
+        values = {**found.values, YIELD.column: (None if math.isnan(old) else old, new)}
+        return replace(found, keeps=self.keeps, values=values, wall_s=time.perf_counter() - self.begun)
 
     def _index(self, aim: Aim) -> int:
         return [one.name for one in self.outputs].index(aim.output.name)
@@ -219,13 +254,18 @@ class Search:
 
     def _yield(self, own: Mapping[str, float]) -> float:
         """%, of the same draws each time, so that designs differ by what they are and not by chance."""
-        from watchsim.studies.tolerance import tolerance
+        from watchsim.studies.tolerance import made
+        from watchsim.studies.tolerance_plan import plan_of
 
+        asked = self.question
         try:
-            made = tolerance(changed(self.question.scene, own), SAMPLES, workers=self.workers)
-        except (SceneError, ValueError):
+            plan = plan_of(changed(asked.scene, own), duration=asked.duration, tolerance=asked.tolerance)
+        except SceneError:
             return math.nan
-        return 100.0 * made.yield_
+        study = made(plan, SAMPLES, self.executor)
+        if not study.whole:
+            raise KeyboardInterrupt
+        return 100.0 * study.yield_
 
     def at(self, point: Array) -> Array:
         return self.low + point * self.range
@@ -237,19 +277,19 @@ class Search:
         """(watched, knobs): derivatives by central differences, of second order on one side where a bound or a design that does
         not tick is in the way; nan where neither can be had."""
         stencils = [(-1.0, 1.0), (1.0, 2.0), (-1.0, -2.0)]
-        moved = {(k, s): _moved(point, k, s * STEP) for k in range(len(point)) for s in (-1.0, 1.0)}
+        moved = {(k, s): _moved(point, k, s * self.step) for k in range(len(point)) for s in (-1.0, 1.0)}
         centre, *_ = self.values([point, *(one for one in moved.values() if _inside(one))])
         out = np.full((len(self.outputs), len(point)), math.nan)
         for k in range(len(point)):
             for first, second in stencils:
-                pair = [_moved(point, k, s * STEP) for s in (first, second)]
+                pair = [_moved(point, k, s * self.step) for s in (first, second)]
                 if not all(map(_inside, pair)):
                     continue
                 one, two = self.values(pair)
                 if np.isnan(one).any() or np.isnan(two).any():
                     continue
                 slope = two - one if first < 0.0 < second else first * (4.0 * one - two - 3.0 * centre)
-                out[:, k] = slope / (2.0 * STEP)
+                out[:, k] = slope / (2.0 * self.step)
                 break
         return out
 
@@ -353,8 +393,9 @@ class Search:
     def _simplex(self, end: tuple[int, float] | None, limits: Sequence[Limit], start: Array) -> None:
         from scipy.optimize import minimize
 
-        corners = [start, *(_moved(start, k, -SIMPLEX if start[k] > 0.5 else SIMPLEX) for k in range(len(start)))]
-        options = {"initial_simplex": np.array(corners), "maxfev": MOVES * len(start), "xatol": NEAR, "fatol": EXACT}
+        corners = [start, *(_moved(start, k, -self.simplex if start[k] > 0.5 else self.simplex) for k in range(len(start)))]
+        ends = {"maxfev": MOVES * len(start), "xatol": self.nearest, "fatol": self.exact}
+        options = {"initial_simplex": np.array(corners), **ends}
         bounds = [(0.0, 1.0)] * len(start)
         minimize(lambda p: self.merit(p, end, limits), start, method="Nelder-Mead", bounds=bounds, options=options)
 
@@ -461,7 +502,7 @@ class Search:
 
         spread = qmc.Sobol(len(self.knobs), rng=0).random_base2(max(6, math.ceil(math.log2(2 * starts))))
         found: list[Array] = []
-        for point in itertools.chain([self.start], 0.05 + 0.9 * spread):
+        for point in itertools.chain([self.first], 0.05 + 0.9 * spread):
             own = np.ascontiguousarray(point)
             if len(found) == starts:
                 break

@@ -315,6 +315,9 @@ def _by_run(loop: Loop, parts: Parts, why: str, duration: float | None = None, s
         duration = min(max(loop.scene.duration, FEWEST * parts.period), max(LONGEST, FEWEST * parts.period))
     while True:
         run = run_from(loop, state, duration)
+        if run.stop == Stop.OVERLAP and state is not None:  # where parts cannot be at the amplitude that was given
+            state = None
+            continue
         seen = judged(run, since_start=state is None)
         means = late_means(run)
         message = f"{why}; this is the end of a run of {run.simulated:.4g} s"

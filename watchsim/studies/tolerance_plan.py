@@ -16,6 +16,7 @@ from watchsim.scene.errors import Fault, SceneError
 from watchsim.scene.load import changed
 from watchsim.scene.read_settings import FUNCTION
 from watchsim.scene.scene import Expectation, Scene
+from watchsim.studies.cycle import Cycle
 from watchsim.studies.point import OUTPUTS, Question
 from watchsim.studies.sampling import Floats, Shifted, Space
 from watchsim.studies.sensitivity import fixed_nominal
@@ -147,13 +148,21 @@ def plan_of(
         same_study(resumed, plan.header())
     if duration is None:
         cycle = steady(bare, tolerance=tolerance)
-        other = steady(changed(bare, space.changes(np.full(len(space.draws), 0.6))), tolerance=tolerance)
+        other = _cycle(changed(bare, space.changes(np.full(len(space.draws), 0.6))), tolerance)
         amplitude = np.radians(cycle.amplitude_deg) if cycle.found and cycle.amplitude_deg else None
-        brief = cycle.found and cycle.oscillations == 1 and other.found and other.oscillations == 1
+        brief = all(one is not None and one.found and one.oscillations == 1 for one in (cycle, other))
         slope = cycle.multipliers[0] if brief and cycle.multipliers else None
         amplitude = float(amplitude) if amplitude else None
         question = dataclasses.replace(question, amplitude=amplitude, brief=brief, slope=slope)
     return dataclasses.replace(plan, question=question)
+
+
+def _cycle(scene: Scene, tolerance: float | None) -> Cycle | None:
+    """None for a watch whose parts overlap at the start, as samples may."""
+    try:
+        return steady(scene, tolerance=tolerance)
+    except SceneError:
+        return None
 
 
 def without_tolerances(scene: Scene) -> Scene:
