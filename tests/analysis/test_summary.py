@@ -96,7 +96,7 @@ def test_text_of_a_watch():
     for part in (
         *("amplitude    270.000000°, scatter", "rate         0 s/d", "28800.00 vph, averaged from 3.333 s to 5 s"),
         *(
-            "would show 289°, +0.0 s/d, 0.00 ms with a lift angle of 52°",
+            "would show 289°, 0.0 s/d, 0.00 ms with a lift angle of 52°",
             "none in 39 half swings",
             "240, 48 per second",
             "overlapped by up to 300 pm",

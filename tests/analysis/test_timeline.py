@@ -252,16 +252,22 @@ def test_what_a_torque_on_the_balance_does_is_not_done_by_the_lever() -> None:
         assert c.impulse - before.impulse == pytest.approx(stiffer * far, rel=1e-4, abs=1e-15)
 
 
-@pytest.mark.parametrize("name", ["tourbillon", "graham"])
-def test_carried_and_heavy_oscillators_get_what_the_contacts_give(name):
-    """Work and impulse by the books of motion, spring, weight and damping, against the contact forces and the impacts."""
-    run = simulate(load(profiles_dir() / name / "scene.toml"), **({"duration": 1.4} if name == "tourbillon" else {}))
+@pytest.mark.parametrize(("name", "close"), [("tourbillon", 2e-5), ("graham", 2e-5), ("grasshopper", 4e-4)])
+def test_carried_and_heavy_oscillators_get_what_the_contacts_give(name, close):
+    """Work and impulse by the books of motion, spring, weight and damping, against the contact forces and the impacts.
+
+    Of pallets hinged on a pendulum the forces act at the hinge.
+    """
+    run = simulate(
+        load(profiles_dir() / name / "scene.toml"),
+        **({} if name == "graham" else {"duration": 1.4 if name == "tourbillon" else 5.0}),
+    )
     told = shown_beats(run, None, rubbed=False)[-2:]
     given = [push for found in pushes(run, told) for push in found]
     most = max(abs(push.stage.energy.to_balance) for push in given)
     assert most > 0.0
     for push in given:
-        assert push.forces + push.impacts == pytest.approx(push.stage.energy.to_balance, abs=2e-5 * most)
+        assert push.forces + push.impacts == pytest.approx(push.stage.energy.to_balance, abs=close * most)
         if push.forces == push.impacts == 0.0:
             assert push.stage.impulse == pytest.approx(0.0, abs=1e-8 * max(abs(one.stage.impulse) for one in given))
 

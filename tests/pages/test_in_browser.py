@@ -21,6 +21,7 @@ from scipy.ndimage import maximum_filter, minimum_filter
 
 from watchsim.analysis.forces import forces
 from watchsim.analysis.sound import BLOW
+from watchsim.analysis.timeline import shown_beats
 from watchsim.geometry.loops import polyline
 from watchsim.pages.compare_page import comparison_page
 from watchsim.pages.report_page import page_text, report
@@ -233,6 +234,64 @@ def test_values_and_forces_are_those_of_the_run(run: Trajectory, written: Path) 
             arm = point - pivot
             expected[i] += arm[0] * force[1] - arm[1] * force[0]
     assert np.abs(moment - expected).max() < 0.01 * np.abs(moment).max() + 1e-12
+
+
+def test_between_impacts_the_net_torque_is_that_of_the_motion(run: Trajectory, written: Path) -> None:
+    """Also where a jump of the speed is too small to have rows of its own: the slope of the speed would show a torque."""
+    unlocks = [one for one in shown_beats(run, rubbed=False)[-2].stages if one.name in ("unlock", "catch-up")]
+    times = np.linspace(unlocks[0].phase.start - 1e-4, unlocks[-1].phase.end, 400)
+    column, inertia = run.slices["balance"].start, run.scene.body("balance").inertia
+    expected = inertia * run.acceleration(times)[:, column]
+    with opened(written) as page:
+        shown = np.array(page.evaluate("ts => ts.map((t) => watchsim.value(3, t))", times.tolist()))
+    off = np.abs(shown - expected)
+    assert np.quantile(off, 0.98) < 0.003 * np.abs(expected).max()
+
+
+@pytest.fixture(scope="module")
+def clock(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    made = simulate(load(Path(str(profiles_dir())) / "graham" / "scene.toml"), duration=6.0)
+    return report(made, tmp_path_factory.mktemp("clock") / "clock.html")
+
+
+CURVES_AND_DOTS = """() => [...document.querySelectorAll("#plots .plot")].map((plot) => {
+  const canvas = plot.querySelector("canvas"), box = canvas.getBoundingClientRect();
+  const dots = [...plot.querySelectorAll(".dot")].map((dot) => {
+    const at = dot.getBoundingClientRect();
+    return [at.x + at.width / 2 - box.x, at.y + at.height / 2 - box.y, getComputedStyle(dot).backgroundColor];
+  });
+  return { title: plot.querySelector("b").textContent, shown: canvas.toDataURL(), font: canvas.getContext("2d").font, dots };
+})"""
+
+
+@pytest.mark.parametrize("made", ["written", "clock"])
+def test_dots_lie_on_their_curves_at_any_time_and_zoom(made: str, request: pytest.FixtureRequest) -> None:
+    """By the pixels that were drawn, as a reader clicks; on a sharp screen, where letters are as large as on any other."""
+    ratio, off, random = 2.0, [], np.random.default_rng(5)
+    with opened(request.getfixturevalue(made), ratio=ratio) as page:
+        for body in range(page.locator("#whose option").count()):
+            page.select_option("#whose", index=body)
+            for turns in (0, 2, 4):
+                page.locator("#plots .field").first.hover()
+                for _ in range(turns):
+                    page.mouse.wheel(0, -500)
+                page.wait_for_timeout(100)
+                if page.locator("#plots .u-over").count() == 0:
+                    continue
+                box = page.locator("#plots .u-over").first.bounding_box()
+                for share in random.uniform(0.0, 1.0, 8).tolist():
+                    page.mouse.click(box["x"] + share * box["width"], box["y"] + 0.5 * box["height"])
+                    page.wait_for_timeout(60)
+                    for plot in page.evaluate(CURVES_AND_DOTS):
+                        assert plot["font"].startswith(f"{12 * ratio:g}px")
+                        drawn = iio.imread(io.BytesIO(base64.b64decode(plot["shown"].split(",", 1)[1]))).astype(float)
+                        for x, y, colour in plot["dots"]:
+                            wanted = [float(part) for part in colour[4:-1].split(",")]
+                            rows, columns = np.nonzero(
+                                np.all(np.abs(drawn[..., :3] - wanted) < 60.0, axis=-1) & (drawn[..., 3] > 120)
+                            )
+                            off.append(np.hypot(columns + 0.5 - ratio * x, rows + 0.5 - ratio * y).min() / ratio)
+    assert len(off) > 100 and max(off) < 1.0
 
 
 def test_keys_play_step_zoom_and_fade(written: Path) -> None:
@@ -598,6 +657,10 @@ def test_a_comparison_shows_the_old_outlines_as_ghosts_and_g_hides_them(tmp_path
             shown.append(page.evaluate("window.watchsim.ghost()"))
         assert shown[0] > 0 and shown == [shown[0], 0, shown[0]]
         assert page.said == [] and len(page.asked) == 1
+        assert "lock" in page.locator("#changed th").all_inner_texts()  # in words, not as the key "design.lock"
+        ghosts = page.evaluate("JSON.parse(document.getElementById('data').textContent).ghost.parts")
+    # The pallets are locked elsewhere; wheel, rod and bob are the same, and no ghost lies on their lines.
+    assert {part["layer"] for part in ghosts} == {"PALLETS"}
 
 
 def test_what_a_phone_cuts_of_a_study_is_scrolled_and_shaded(tmp_path: Path) -> None:

@@ -351,7 +351,7 @@ def test_a_key_has_every_colour_that_lies_behind_forces() -> None:
     made = ws.plot_forces(ws.simulate("profiles/swiss_lever", 1.0))
     shades = {to_rgba(one.get_facecolor()) for axes in made.axes for one in axes.patches}
     assert len(shades) > 4 and shades <= {to_rgba(one.get_facecolor()) for one in made.artists if isinstance(one, Patch)}
-    assert {"impulse", "second impulse"} <= {one.get_text() for one in made.texts}
+    assert {"impulse on stone", "impulse on tooth"} <= {one.get_text() for one in made.texts}
 
 
 @pytest.mark.parametrize("vision", VISIONS)

@@ -212,7 +212,7 @@ def test_phases_are_shaded_when_they_are(run: ws.Trajectory) -> None:
     assert len(shaded) == len(expected) > 5
     assert np.array(shaded) + base == pytest.approx(np.array(expected), abs=1e-6)
     words = {text.get_text() for text in figure.texts}
-    assert {"unlock", "impulse", "drop"} <= words
+    assert {"unlock", "impulse on stone", "drop"} <= words
     assert ws.plot_kinematics(run).axes[0].patches == [] or len(passing(run, (0.0, 1.0))) <= 12
 
 
@@ -572,6 +572,22 @@ def test_arrows_of_forces_lie_in_their_pictures_and_have_a_scale(run: ws.Traject
     of_key = next(length for length, one in zip(dots, arrows, strict=True) if one is key)
     newtons = float(number) * {"N": 1.0, "mN": 1e-3, "µN": 1e-6}[unit]
     assert newtons * max(dots) / of_key == pytest.approx(max(largest, newtons), rel=1e-3)
+
+
+def test_an_impulse_on_the_balance_itself_has_its_arrow_and_what_does_not_last_has_no_picture() -> None:
+    """A co-axial: the wheel pushes the balance every other beat, and the lever is on its bank before the lock."""
+    run = ws.simulate(ws.load(ws.profiles_dir() / "coaxial").set("run.record", "events"), duration=1.5)
+    beats = shown_beats(run, rubbed=False)[-2:]
+    kinds = [{stage.name for stage in beat.stages if stage.phase.end <= stage.phase.start} for beat in beats]
+    figure = ws.plot_timeline(run)
+    words = [text.get_text() for text in figure.texts]
+    assert kinds == [{"run to banking"}] * 2 and not any("banking" in one for one in words)
+    (pushed,) = (stage for beat in beats for stage in beat.stages if title(stage) == "impulse on balance")
+    found = ws.forces(run, 0.5 * (pushed.phase.start + pushed.phase.end))
+    pairs = [run.pairs[int(contact)] for contact in found.pairs]
+    (k,) = (k for k, pair in enumerate(pairs) if {"wheel", "balance"} == {pair.body_a, pair.body_b})
+    tips = [one.xy for axes in figure.axes for one in axes.texts if getattr(one, "arrow_patch", None) is not None]
+    assert min(math.dist(tip, 1e3 * found.point[0, k]) for tip in tips) < 1e-9
 
 
 def test_few_pictures_use_the_width_and_slow_bodies_have_degrees_per_second() -> None:

@@ -399,7 +399,7 @@ def test_a_curve_in_usual_units_with_what_failed():
 
 def test_a_family_and_a_map():
     figure = plot_sweep(made(TORQUE, DRAWING))
-    assert "torque 1 value magnitude (µN·m)" in words(figure)  # it turns clockwise; the curves run from weak to strong
+    assert "torque 1 magnitude (µN·m)" in words(figure)  # it turns clockwise; the curves run from weak to strong
     assert [sorted(line.get_xdata())[0] for line in figure.axes[0].get_lines()][:1] == [pytest.approx(1.0)]
     assert [text.get_text() for text in figure.legends[0].get_texts()] == ["a.dxf", "b.dxf"]
     other = Axis("springs.0.stiffness", tuple(1e-6 * (1.0 + 0.1 * i) for i in range(8)), "N·m/rad", "µN·m/rad")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -16,6 +17,7 @@ from watchsim.analysis.timeline import Stages, Staging, knows_energies
 from watchsim.analysis.timing import Beats
 from watchsim.analysis.verdict_kinds import BESIDE
 from watchsim.mechanism.compile import scene_size
+from watchsim.scene.keys import in_words
 from watchsim.scene.roles import keeps_time
 from watchsim.simulation import MOREAU
 from watchsim.simulation.trajectory import Trajectory
@@ -226,7 +228,8 @@ def _heard(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     if heard is None:
         return
     forms = {"amplitude_deg": "{:.0f}°", "rate_s_per_d": "{:+.1f} s/d", "beat_error_ms": "{:.2f} ms"}
-    listed = ", ".join(form.format(heard[name]) for name, form in forms.items() if heard[name] is not None).replace("-", "−")
+    shown = (form.format(heard[name]) for name, form in forms.items() if heard[name] is not None)
+    listed = ", ".join(re.sub(r"^[+-](?=0\.0 )", "", text) for text in shown).replace("-", "−")
     if listed:
         lift = heard["lift_angle_deg"]
         yield "timegrapher", f"would show {listed}" + ("" if lift is None else f" with a lift angle of {lift:.4g}°")
@@ -359,17 +362,18 @@ def _verdicts(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
 
 
 def expected_text(entry: Mapping[str, Any]) -> str:
-    """ "amplitude = 290.73° ± 0.05°, got 290.732°" from an entry of the summary's `expect`."""
+    """ "amplitude = 290.73° ± 0.05°, got 290.732°" from an entry of the summary's `expect`, its key in words."""
+    key = re.sub(r" (rad|m|deg)( per s)?$", lambda found: " velocity" if found[2] else "", in_words(entry["key"]))
     unit = entry["unit"] if entry["unit"] in ("", "°") else f" {entry['unit']}"
     promised = f"= {entry['expected']:.12g}{unit} ± {entry['tolerance']:.4g}{unit}"
     ends = [(word, entry.get(name)) for word, name in (("from", "min"), ("to", "max")) if entry.get(name) is not None]
     if ends:
         promised = " ".join(f"{word} {end:.12g}{unit}" for word, end in ends)
     if entry["ok"] is None:
-        return true_minus(f"{entry['key']} {promised}")
+        return true_minus(f"{key} {promised}")
     if entry["got"] is None:
-        return true_minus(f"{entry['key']} {promised}") + f", but {entry['message']}"
+        return true_minus(f"{key} {promised}") + f", but {entry['message']}"
     # One digit more than the tolerance has.
     size = entry["tolerance"] if math.isfinite(entry["tolerance"] or math.inf) else abs(entry["expected"]) or 1.0
     digits = max(4, 2 + math.ceil(math.log10(max(abs(entry["got"]), size) / size)))
-    return true_minus(f"{entry['key']} {promised}, got {entry['got']:.{min(digits, 17)}g}{unit}")
+    return true_minus(f"{key} {promised}, got {entry['got']:.{min(digits, 17)}g}{unit}")

@@ -142,7 +142,7 @@ def strip(entries: Sequence[tuple[str, float, int]], unit: str, description: str
     for name, length, colour in entries:
         box = element("title", f"{name}: {length:.3g} {unit}")
         width = max(length * scale, 0.5)
-        parts.append(element("rect", box, x=f"{x:.2f}", y=0, width=f"{width:.2f}", height=height, class_=f"s{colour % 8}"))
+        parts.append(element("rect", box, x=f"{x:.2f}", y=0, width=f"{width:.2f}", height=height, class_=f"s{colour}"))
         x += length * scale
     step = round_step(whole / 8.0)
     for k in range(int(whole / step) + 1):

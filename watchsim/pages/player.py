@@ -243,7 +243,7 @@ def _channel(
             return False
         if np.any(np.abs(rate - np.concatenate((u[i + 1 : j], u_middle[i:j]))) > looser * SLOPE * largest[0]):
             return False
-        pull = _acceleration(s[: j - i - 1], h, (u[i], a[i]), (u[j], a[j]))
+        pull = a[i] + s[: j - i - 1] * (a[j] - a[i])  # as the page draws force and torque: a jump of the speed is neither
         return not np.any(np.abs(pull - a[i + 1 : j]) > looser * CURVE * largest[1])
 
     # Both rows of an impact that this body has felt; those of the others' are rows like any.
@@ -254,12 +254,6 @@ def _channel(
     rows = _without_repeats(rows, q, u, a)
     base = q[0] if len(q) else np.zeros(q.shape[1])
     return Channel(body.name, t[rows], base, np.hstack((q[rows] - base, u[rows], a[rows])))
-
-
-def _acceleration(s: Array, h: float, left: tuple[Array, Array], right: tuple[Array, Array]) -> Array:
-    """The slope of the cubic in u: what the page draws as force or torque."""
-    way = (right[0] - left[0]) / h
-    return left[1] + s * (6.0 * way - 4.0 * left[1] - 2.0 * right[1] + s * (3.0 * (left[1] + right[1]) - 6.0 * way))
 
 
 def _without_repeats(kept: NDArray[np.int64], q: Array, u: Array, a: Array) -> NDArray[np.int64]:

@@ -17,11 +17,13 @@ from watchsim.escapement.function_report import Table, measured, tables
 from watchsim.escapement.measure import measure
 from watchsim.pages.charts import Dots, bars, scatter, strip
 from watchsim.pages.html import Content, Markup, element, joined, section, table
+from watchsim.render.marks import spaced
 from watchsim.render.palette import ENERGIES
-from watchsim.scene.roles import swings
+from watchsim.scene.keys import in_words
+from watchsim.scene.roles import roles, swings
 from watchsim.scene.scene import Scene
 from watchsim.simulation.trajectory import Array, Trajectory
-from watchsim.units import decimals_for, metric, signed
+from watchsim.units import decimals_for, metric, signed, true_minus
 
 
 def function_tables(scene: Scene) -> Iterator[Markup]:
@@ -87,7 +89,7 @@ def _is_list(value: Any) -> bool:
 ORDER = ("unlock", "catch-up", "impulse", "drop", "run to banking", "recoil")
 COLOURS = (0, 1, 2, 3, 4, 0)
 SIDES = ((1, "odd beats"), (0, "even beats"))
-HEAD_PHASE_TABLES = ("phase", "lasts (ms)", "balance at (°)", "balance turns (°)", "lever turns (°)", "wheel turns (°)")
+AGAIN = 8  # the colour of an impulse that follows another
 
 
 @dataclass(frozen=True)
@@ -128,8 +130,9 @@ class _Sums:
             self.turns[place] += turn
 
 
-def phase_tables(phases: Iterable[Phase]) -> Iterator[Markup]:
-    """The section, with a strip of time and a table for either direction of the balance; nothing where no phases are known."""
+def phase_tables(phases: Iterable[Phase], oscillator: str = "balance") -> Iterator[Markup]:
+    """The section, with a strip of time and a table for either direction of the swing; nothing where no phases are known."""
+    columns = ("phase", "lasts (ms)", f"{oscillator} at (°)", f"{oscillator} turns (°)", "lever turns (°)", "wheel turns (°)")
     sums: dict[int, dict[tuple[str, str], _Sums]] = {odd: {} for odd, _ in SIDES}
     for one in phases:
         if one.name in ORDER:
@@ -143,9 +146,9 @@ def phase_tables(phases: Iterable[Phase]) -> Iterator[Markup]:
         words = f"Phases of {title}: {', '.join(f'{name} {length:.3g} ms' for name, length, _ in lengths)}"
         count = max(len(kind.lasts) for kind in kinds)
         anchor = all(np.array_equal(kind.turns[:, 1], kind.turns[:, 2]) for kind in kinds)  # the oscillator is its own lever
-        shown = [k for k, head in enumerate(HEAD_PHASE_TABLES) if not (anchor and head.startswith("lever"))]
+        shown = [k for k, head in enumerate(columns) if not (anchor and head.startswith("lever"))]
         rows = [[kind.row()[k] for k in shown] for kind in kinds]
-        heads = [HEAD_PHASE_TABLES[k] for k in shown]
+        heads = [columns[k] for k in shown]
         what = f"means of {count} beats, in brackets their scatter" if count > 1 else "one"
         parts += [strip(lengths, "ms", words), table(heads, rows, f"{title.capitalize()}: {what}")]
     if parts:
@@ -154,10 +157,12 @@ def phase_tables(phases: Iterable[Phase]) -> Iterator[Markup]:
 
 def _kinds(sums: dict[tuple[str, str], _Sums]) -> list[_Kind]:
     """In the order of a beat; an impulse apart for what it acts on."""
-    found = []
+    found: list[_Kind] = []
     for (name, on), own in sorted(sums.items(), key=lambda item: ORDER.index(item[0][0])):
         turns = np.degrees(np.array(own.turns).reshape(-1, 3))
         title, colour = f"{name} on {on}" if on else name, COLOURS[ORDER.index(name)]
+        if name == "impulse" and any(kind.number == colour for kind in found):
+            colour = AGAIN
         found.append(_Kind(title, colour, np.array(own.lasts), np.degrees(np.array(own.at)), turns))
     return found
 
@@ -176,7 +181,7 @@ def timekeeping(run: Trajectory, numbers: Mapping[str, Any]) -> Iterator[Markup]
     if not cards and not swings(run.scene):
         return
     note = None
-    if numbers.get("window_s"):
+    if cards and numbers.get("window_s"):
         start, end = numbers["window_s"]
         words = f"Means over {start:.4g} s to {end:.4g} s. Scatter: how much the beats of that time scatter and drift"
         note = element("p", f"{words}{_computed(numbers)}.", class_="note")
@@ -254,7 +259,12 @@ JUDGED = {True: "✓ kept", False: "✗ missed", None: "not judged"}
 
 def sheet(run: Trajectory, numbers: Mapping[str, Any]) -> Markup:
     """All sections of the sheet that this run has something to say to."""
-    parts = (timekeeping(run, numbers), phase_tables(each_phase(run)), function_tables(run.scene), _energy(run))
+    parts = (
+        timekeeping(run, numbers),
+        phase_tables(each_phase(run), spaced(roles(run.scene).oscillator or "balance")),
+        function_tables(run.scene),
+        _energy(run),
+    )
     lines = (element("span", line) for line in headlines(run, numbers).splitlines())
     words = section("words", "The run in words", element("pre", *lines))
     return joined((*parts, _judgement(numbers), _parameters(run), words))
@@ -312,11 +322,7 @@ def _parameters(run: Trajectory) -> Iterator[Markup]:
         rows = [(key, value) for key, value in rows if key != "run.duration"]
         rows.append(("run.duration", f"{run.simulated:.9g} s simulated; {run.scene.duration:.9g} s in the scene"))
     if rows:
-        listed = (element("div", element("dt", _breakable(key)), element("dd", value)) for key, value in rows)
+        listed = (
+            element("div", element("dt", in_words(key), title=key), element("dd", true_minus(value))) for key, value in rows
+        )
         yield section("parameters", "Parameters", element("dl", *listed))
-
-
-def _breakable(key: str) -> Markup:
-    """A dotted key that a narrow column may break after a dot, and nowhere else."""
-    head, *tail = key.split(".")
-    return joined((head, *((Markup(".<wbr/>"), part) for part in tail)))

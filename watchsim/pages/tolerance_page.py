@@ -11,8 +11,8 @@ from watchsim.pages.html import Content, Markup, element, image, joined, section
 from watchsim.pages.report_page import check_page
 from watchsim.render.style import MM
 from watchsim.render.tolerance_plot import plot_tolerance
+from watchsim.scene.keys import in_words
 from watchsim.storage.write import write_file
-from watchsim.studies.axes import in_words
 from watchsim.studies.point import OUTPUTS
 from watchsim.studies.tolerance_result import ToleranceStudy
 from watchsim.units import signed

@@ -28,6 +28,7 @@ from watchsim.render.palette import ENERGIES, FAINT, INK
 from watchsim.render.phase_plots import bands, beat_name
 from watchsim.render.view import recorded
 from watchsim.scene.roles import is_driven, keeps_time, roles
+from watchsim.scene.trains import Ride, rides
 from watchsim.simulation.trajectory import Array, Trajectory, frames
 from watchsim.units import metric, signed
 
@@ -213,16 +214,36 @@ def _instants(run: Trajectory, start: float, end: float) -> Array:
 
 
 def torque_on(run: Trajectory, name: str, times: Array) -> Array:
-    """Moment of all contact forces on a body about its pivot, N·m (n,), after what happens at these times (s)."""
+    """Moment of all contact forces on a body about its pivot, N·m (n,), after what happens at these times (s).
+
+    What presses on a body that turns on it, such as a hinged pallet, acts at the hinge.
+    """
     found = forces(run, times)
-    places = frames(run.scene, run.slices, run.sample(times)[0])[name]
-    arm, force = found.point - places[:, None, :2], found.on_a
-    moments = np.nan_to_num(arm[..., 0] * force[..., 1] - arm[..., 1] * force[..., 0])
+    placed = frames(run.scene, run.slices, run.sample(times)[0])
+    hung, names = rides(run.scene.bodies), [body.name for body in run.scene.bodies]
     total = np.zeros(len(times))
-    for contact, moment in zip(found.pairs.tolist(), moments.T, strict=True):
+    for k, contact in enumerate(found.pairs.tolist()):
         pair = run.pairs[contact]
-        total += {pair.body_a: 1.0, pair.body_b: -1.0}.get(name, 0.0) * moment
+        for side, sign in ((pair.body_a, 1.0), (pair.body_b, -1.0)):
+            hinge = _reached(hung, names.index(side), names.index(name))
+            if hinge is None:
+                continue
+            at = found.point[:, k] if hinge < 0 else placed[names[hinge]][:, :2]
+            arm, force = at - placed[name][:, :2], found.on_a[:, k]
+            total += sign * np.nan_to_num(arm[:, 0] * force[:, 1] - arm[:, 1] * force[:, 0])
     return total
+
+
+def _reached(hung: Sequence[Ride], side: int, body: int) -> int | None:
+    """The body by whose hinge a force on `side` reaches a body; negative where it is a part of that one, None where it does not
+    reach it."""
+    hinge = -1
+    while side >= 0:
+        side = hung[side].part_of
+        if side == body:
+            return hinge
+        hinge, side = side, hung[side].host
+    return None
 
 
 def _impacts(run: Trajectory, name: str, compiled: Compiled, stage: Stage) -> tuple[tuple[float, float], ...]:

@@ -258,7 +258,7 @@ def plot_phase_portrait(
     shown = [channel for body in (chosen if bodies else chosen[:12]) for channel in channels(run, body)]
     if not shown:
         raise ValueError("nothing to plot: no body of this run moves")
-    across = min(1 if width < style.NARROW else 3, len(shown))
+    across = 1 if width < style.NARROW else 2 if len(shown) in (2, 4) else min(3, len(shown))
     rows = -(-len(shown) // across)
     names = names_in(phases, banded=False)
     step = OVER + TALL + UNDER

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -26,7 +26,7 @@ from watchsim.render.marks import round_below, spaced
 from watchsim.render.palette import ELSE, FAINT, FORCE, INK, PHASE_LINES, PHASES, SECOND, looks
 from watchsim.render.parts import Posed, loops_of, outline
 from watchsim.render.view import Window, dense, placed, poses
-from watchsim.scene.roles import hinged_pallets, with_anchor
+from watchsim.scene.roles import hinged_pallets, partners, with_anchor
 from watchsim.simulation.trajectory import Array, Trajectory
 from watchsim.units import metric
 
@@ -55,19 +55,25 @@ def strong(name: str) -> str:
     return PHASE_LINES.get(name, FAINT)
 
 
-def names_in(beats: Iterable[Iterable[Phase]], left_out: Sequence[str] = ("locked",), banded: bool = True) -> list[str]:
-    """The names of the phases, each once, in their order; `banded`: of an impulse that follows another, too."""
-    names: list[str] = []
+def names_in(beats: Iterable[Sequence[Phase]], left_out: Sequence[str] = ("locked",), banded: bool = True) -> dict[str, str]:
+    """The phases that last, by the names of their colours, in their order; each with its words in a key.
+
+    banded  an impulse that follows another has its own colour, and where its words are the same in all beats they say on what
+    """
+    words: dict[str, set[str]] = {}
     for beat in beats:
-        own = [phase.name for phase in beat if phase.name not in left_out]
-        names += own
-        if banded and own.count("impulse") > 1:
-            names.append(AGAIN)
-    found = list(dict.fromkeys(names))
+        impulses = 0
+        for phase in beat:
+            if phase.name in left_out or not phase.end > phase.start:
+                continue
+            impulses += phase.name == "impulse"
+            name = AGAIN if banded and phase.name == "impulse" and impulses == 2 else phase.name
+            words.setdefault(name, set()).add(f"{phase.name} on {phase.on}" if banded and phase.on else name)
+    found = {name: min(said) if len(said) == 1 else name for name, said in words.items()}
+    order = [name for name in found if name != AGAIN]
     if AGAIN in found:
-        found.remove(AGAIN)
-        found.insert(found.index("impulse") + 1, AGAIN)
-    return found
+        order.insert(order.index("impulse") + 1, AGAIN)
+    return {name: found[name] for name in order}
 
 
 def beat_name(beat: Beat) -> str:
@@ -88,7 +94,7 @@ def shade(axes: Axes, phases: Iterable[Phase], zero: float = 0.0, factor: float 
 def name_above(axes: Axes, stages: Sequence[Stage], zero: float, factor: float = 1e3) -> None:
     """Names above the panel, spread where phases are short, with a line to the middle of each."""
     low, high = axes.get_xlim()
-    shown = [stage for stage in stages if stage.name != "locked"]
+    shown = _lasting(stages)
     middles = [0.5 * factor * (stage.phase.start + stage.phase.end - 2.0 * zero) for stage in shown]
     wide, tall = style.width_mm(axes), style.height_mm(axes)
     places = spread(middles, 4.2 * (high - low) / wide)
@@ -104,13 +110,13 @@ def lead(axes: Axes, place: float, top: float, height: float, zorder: float = 2)
     axes.plot((place, top), (1.0, 1.0 + height), color=FAINT, linewidth=style.HAIR, **thin)
 
 
-def name_key(figure: Figure, names: Iterable[str], top: float, lines: bool = False) -> float:
-    """Swatches with the names of phases from the upper left on, `top` mm below the upper edge; where they end, mm."""
+def name_key(figure: Figure, names: Mapping[str, str], top: float, lines: bool = False) -> float:
+    """Swatches with words (`names_in`) from the upper left on, `top` mm below the upper edge; where they end, mm."""
     wide, high = style.size_mm(figure)
     row = style.LEAD * style.SMALL * style.POINT
     x, y = style.EDGE, top + 0.5 * row
-    for name in names:
-        own = SWATCH + AFTER_SWATCH + style.LETTER * style.SMALL * style.POINT * len(name)
+    for name, words in names.items():
+        own = SWATCH + AFTER_SWATCH + style.LETTER * style.SMALL * style.POINT * len(words)
         if x > style.EDGE and x + own > wide - style.EDGE:
             x, y = style.EDGE, y + 1.15 * row
         tall = 0.7 if lines else 0.7 * row
@@ -118,7 +124,7 @@ def name_key(figure: Figure, names: Iterable[str], top: float, lines: bool = Fal
         place, size = (x / wide, 1.0 - (y + 0.5 * tall) / high), (SWATCH / wide, tall / high)
         figure.add_artist(Rectangle(place, *size, color=colour, linewidth=0.0, transform=figure.transSubfigure))
         figure.text(
-            (x + SWATCH + AFTER_SWATCH) / wide, 1.0 - y / high, name, fontsize=style.SMALL, va="center_baseline", color=INK
+            (x + SWATCH + AFTER_SWATCH) / wide, 1.0 - y / high, words, fontsize=style.SMALL, va="center_baseline", color=INK
         )
         x += own + APART
     return y + 0.5 * row
@@ -268,7 +274,7 @@ def plot_timeline(
     heights = [TITLE + count * (tall + WORDS) + LEADS + CURVES + TIME for count in rows]
     made = style.figure(width, style.HEADING + sum(heights), ax=ax)
     what = "arrows: contact forces" if width >= style.NARROW else "forces"
-    style.heading(made, run.scene.title, f"Amid each phase; {what} on the {' and '.join(_pushed_bodies(run))}")
+    style.heading(made, run.scene.title, f"In the middle of each phase; {what} on {' and '.join(_pushed_bodies(run))}")
     posed = Posed(run.scene, compile_scene(run.scene))
     drawn, top = iter(arrows), style.HEADING
     for beat, own, count, height in zip(beats_shown, instants, rows, heights, strict=True):
@@ -285,16 +291,31 @@ def plot_timeline(
 
 
 def key_instants(beat: Beat) -> list[Instant]:
-    """The middle of every phase of a beat, and the rest that follows."""
-    shown = [stage for stage in beat.stages if stage.name != "locked"]
+    """The middle of every phase of a beat that lasts, and the rest that follows; a recoil ends with the next impulse."""
+    shown = _lasting(beat.stages)
     found = [Instant(0.5 * (stage.phase.start + stage.phase.end), title(stage)) for stage in shown]
+    if shown[-1].name == "recoil":
+        return found
     way = shown[-1].phase.end - shown[0].phase.start
     return [*found, Instant(min(shown[-1].phase.end + AFTER * way, max(beat.end, shown[-1].phase.end)), "at rest")]
 
 
+def _lasting(stages: Sequence[Stage]) -> list[Stage]:
+    """Those with a length, without the free oscillation: a lever that is on its bank before the lock has no run to it."""
+    return [stage for stage in stages if stage.name != "locked" and stage.phase.end > stage.phase.start]
+
+
 def _pushed_bodies(run: Trajectory) -> tuple[str, ...]:
-    """The lever or anchor, or the pallets that are hinged on the oscillator."""
-    return hinged_pallets(run.scene) or (str(with_anchor(run.scene).lever),)
+    """The lever or anchor, with the balance where the wheel pushes that itself; or the pallets hinged on the oscillator.
+
+    Between two of them a force is shown on the first.
+    """
+    parts = with_anchor(run.scene)
+    touched = partners(run.scene, str(parts.wheel))
+    return hinged_pallets(run.scene) or (
+        str(parts.lever),
+        *(name for name in (parts.oscillator,) if name in touched and name != parts.lever),
+    )
 
 
 Box = tuple[float, float, float, float]
@@ -381,7 +402,7 @@ def _arrows(axes: Axes, points: Array, arrows: Array) -> None:
 
 
 def _pushed(run: Trajectory, instants: list[Instant]) -> list[tuple[Array, Array]]:
-    """Where contacts press on the lever (mm) and how (N)."""
+    """Where contacts press on those bodies (mm) and how (N)."""
     names = _pushed_bodies(run)
     try:
         found = forces(run, [one.t for one in instants])
@@ -389,7 +410,8 @@ def _pushed(run: Trajectory, instants: list[Instant]) -> list[tuple[Array, Array
         return [(np.zeros((0, 2)), np.zeros((0, 2)))] * len(instants)
     pairs = [run.pairs[int(contact)] for contact in found.pairs]
     # Forces are given for the first body of a pair.
-    sides = np.array([float(one.body_a in names) - float(one.body_b in names) for one in pairs]).reshape(-1)
+    rank = {name: len(names) - k for k, name in enumerate(names)}
+    sides = np.sign([float(rank.get(one.body_a, 0) - rank.get(one.body_b, 0)) for one in pairs]).reshape(-1)
     held, on_a = np.isfinite(found.point[..., 0]) & (sides != 0.0), found.on_a
     return [(1e3 * found.point[k, own], sides[own, None] * on_a[k, own]) for k, own in enumerate(held)]
 

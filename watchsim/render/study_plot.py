@@ -19,7 +19,8 @@ from matplotlib.transforms import blended_transform_factory
 from watchsim.render import style
 from watchsim.render.palette import FAINT, GRID, INK
 from watchsim.render.style import SERIES
-from watchsim.studies.axes import Axis, in_words
+from watchsim.scene.keys import in_words
+from watchsim.studies.axes import Axis
 from watchsim.studies.fit import Fit
 from watchsim.studies.goals import Better
 from watchsim.studies.point import Output

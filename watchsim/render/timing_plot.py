@@ -28,6 +28,7 @@ LABEL_AT = LEFT - 3.5  # mm, of the label left of its panel
 COLUMNS = 1500  # of dots in a panel
 SWINGS_RIGHT, SWINGS_TALL, SWINGS_BETWEEN, SWINGS_KEY = 4.0, 24.0, 3.5, 4.0  # mm
 BIGGER = 1.9  # dots of one direction, so that those of the other do not hide them
+SHARE = 0.02  # of the largest amplitude: a smaller range of them is not magnified
 KEY_DOT = 2.4  # pt, of a dot in the key
 TAPE_RIGHT, TAPE_TALL, TAPE_BETWEEN, TAPE_KEY, PAPER_TALL = 12.0, 22.0, 5.0, 5.0, 55.0  # mm
 PAPER = 20.0  # ms, the width of the paper where the dots do not stay within it
@@ -57,6 +58,7 @@ def plot_timing(
     panels = [style.panel(made, LEFT, top + k * step, wide, SWINGS_TALL) for k in range(3)]
     # Label, values, and the range that is not magnified further.
     swing = ("amplitude (°)", found.amplitude_deg, 1.0) if found.angular else ("amplitude (mm)", 1e3 * found.amplitude, 0.01)
+    swing = (*swing[:2], _finer(swing[1], swing[2]))
     rows = (swing, ("rate (s/d)", found.rate_s_per_d, 1.0), ("beat error (ms)", found.beat_error_ms, 0.01))
     for axes, (label, values, least) in zip(panels, rows, strict=True):
         style.dress(axes)
@@ -106,7 +108,7 @@ def tape_figure(
 ) -> Figure:
     """The same of any tape, such as that of a recording, which has no true amplitude."""
     top, step = style.HEADING + TAPE_KEY, TAPE_TALL + TAPE_BETWEEN
-    rows = [("rate (s/d)", shown.rate_s_per_d, 1.0), ("amplitude (°)", shown.amplitude_deg, 1.0),
+    rows = [("rate (s/d)", shown.rate_s_per_d, 1.0), ("amplitude (°)", shown.amplitude_deg, _finer(shown.amplitude_deg, 1.0)),
             ("beat error (ms)", shown.beat_error_ms, 0.01)]  # fmt: skip
     read = shown.shown_deg[inside]
     if not np.isfinite(np.concatenate([shown.amplitude_deg[inside], read])).any():
@@ -178,6 +180,12 @@ def _dots(axes: Axes, x: Array, y: Array, mark: str, number: int, size: float, g
     """In colour `number`; of many those that differ on paper."""
     look: dict[str, Any] = {"color": style.SERIES[number], "markersize": size, "markeredgewidth": 0.0}
     return axes.plot(*reduced(x, y, COLUMNS), mark, gid=gid, label=label, **look)[0]
+
+
+def _finer(amplitudes: Array, least: float) -> float:
+    """The range of amplitudes that is not magnified further: of a pendulum a share of its few degrees."""
+    known = amplitudes[np.isfinite(amplitudes)]
+    return min(least, SHARE * float(known.max())) if len(known) else least
 
 
 def _room(axes: Axes, values: Array, least: float) -> None:

@@ -14,8 +14,8 @@ from matplotlib.patches import Patch
 from watchsim.render import style
 from watchsim.render.palette import FAINT, INK
 from watchsim.render.study_plot import output_label
+from watchsim.scene.keys import in_words
 from watchsim.scene.scene import Scene
-from watchsim.studies.axes import in_words
 from watchsim.studies.point import OUTPUTS, Output
 from watchsim.studies.sampling import deviation
 from watchsim.studies.study_report import WHETHER

@@ -29,7 +29,7 @@ TALL, FOOT = 0.95, 31.0  # of a panel's width; mm, of title, names and scale
 DECADES = 1e3  # below the most: less counts as least
 THICK, POINTS = 3.2, 26.0  # pt, and pt² of a corner
 ROOM = 0.25  # of what wears, around it
-LEAST_SIDE = 1e-5  # m, of a panel
+LEAST_SIDE = 0.02  # of the body's outlines: narrower, a corner alone would not show what it is the corner of
 MM = 1e3
 
 
@@ -91,10 +91,12 @@ def _panel(axes: Any, name: str, sides: list[int], what: tuple[Wear, Compiled, d
     found, compiled, cells = what
     worn = np.concatenate([_worn_ends(found, compiled, side) for side in sides])
     middle = 0.5 * MM * (worn.min(axis=0) + worn.max(axis=0))
-    half = (0.5 + ROOM) * MM * max(float(np.ptp(worn, axis=0).max()), LEAST_SIDE)
     primitives = compiled.model.primitives
-    for other in np.flatnonzero(primitives.body == primitives.body[sides[0]]):
-        axes.plot(*(MM * cell_ends(compiled, int(other))).T, color=FAINT, linewidth=style.THIN, zorder=1)
+    whole = [cell_ends(compiled, int(other)) for other in np.flatnonzero(primitives.body == primitives.body[sides[0]])]
+    least = LEAST_SIDE * float(np.ptp(np.concatenate(whole), axis=0).max())
+    half = (0.5 + ROOM) * MM * max(float(np.ptp(worn, axis=0).max()), least)
+    for points in whole:
+        axes.plot(*(MM * points).T, color=FAINT, linewidth=style.THIN, zorder=1)
     for side in sides:
         points = MM * cell_ends(compiled, side)
         if len(cells[side]):
@@ -112,10 +114,10 @@ def _panel(axes: Any, name: str, sides: list[int], what: tuple[Wear, Compiled, d
     axes.set_xlim(middle[0] - half, middle[0] + half)
     axes.set_ylim(middle[1] - half, middle[1] + half)
     axes.set_title(name, fontsize=style.LABEL, color=INK)
-    whole = found.in_a_year(sum(float(found.along[side].sum()) for side in sides))
-    words = f"{metric(whole, 'N·m', 3)} a year"
+    taken = found.in_a_year(sum(float(found.along[side].sum()) for side in sides))
+    words = f"{metric(taken, 'N·m', 3)} a year"
     if corners:
-        there = found.in_a_year(sum(float(found.along[side].sum()) for side in corners)) / whole
+        there = found.in_a_year(sum(float(found.along[side].sum()) for side in corners)) / taken
         words += f", {100.0 * there:.0f} % at corners"
     axes.set_xlabel(words, fontsize=style.SMALL, color=INK)
     style.ticks(axes.xaxis, 3)

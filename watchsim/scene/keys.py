@@ -523,6 +523,23 @@ def words_of(key: str) -> tuple[str, ...]:
     return tuple(word.strip('"') for word in _WORD.findall(key)) if '"' in key else tuple(key.split("."))
 
 
+PLACES = ("x", "y")
+
+
+def in_words(key: str) -> str:
+    """A dotted path as it is said: "bodies.wheel.position.1" is "wheel position y", "torques.0.value" is "torque 1"."""
+    said: list[str] = []
+    for part in words_of(key):
+        if not part.isdigit():
+            unsaid = part == "adjust" or part in (("value",) if said else ("design", "bodies"))
+            said += [] if unsaid else [part.replace("_", " ")]
+        elif said and said[-1] == "position" and int(part) < len(PLACES):
+            said.append(PLACES[int(part)])
+        elif said:
+            said[-1] = f"{said[-1].removesuffix('s')} {int(part) + 1}"
+    return " ".join(said)
+
+
 def dotted(words: Iterable[str]) -> str:
     """The path of these words."""
     return ".".join(f'"{word}"' if "." in word else word for word in words)

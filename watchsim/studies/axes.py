@@ -14,7 +14,6 @@ import numpy as np
 
 from watchsim.scene.assign import dimension_of, full_key
 from watchsim.scene.errors import Fault, SceneError
-from watchsim.scene.keys import words_of
 from watchsim.scene.scene import Scene
 from watchsim.units import NUMBER, Dimension, UnitError, parse, show, split
 
@@ -45,22 +44,6 @@ class Axis:
 def as_typed(value: Value, unit: str) -> Value:
     """The value in the unit that it was typed in, so that what is said of it is said in that unit."""
     return value if isinstance(value, str) or not unit else show(value, unit, 12)
-
-
-PLACES = ("x", "y")
-
-
-def in_words(key: str) -> str:
-    """A dotted path as it is said: "bodies.wheel.position.1" is "wheel position y", "torques.0.value" is "torque 1 value"."""
-    said: list[str] = []
-    for part in words_of(key):
-        if not part.isdigit():
-            said += [] if part == "adjust" or (not said and part in ("design", "bodies")) else [part.replace("_", " ")]
-        elif said and said[-1] == "position" and int(part) < len(PLACES):
-            said.append(PLACES[int(part)])
-        elif said:
-            said[-1] = f"{said[-1].removesuffix('s')} {int(part) + 1}"
-    return " ".join(said)
 
 
 def slug(unit: str) -> str:

@@ -17,7 +17,7 @@ import numpy as np
 
 from watchsim.analysis.verdict_kinds import TICKS
 from watchsim.displays import notebook_html
-from watchsim.studies.axes import in_words
+from watchsim.scene.keys import in_words
 from watchsim.studies.chaos import Basis, indices
 from watchsim.studies.point import OUTPUTS, Row
 from watchsim.studies.sampling import Floats, Space, deviation

@@ -13,7 +13,7 @@ class Curves {
   // The plots of a body: each a title, a unit and its lines; a line has a value at any time and its own points in a range.
   of(b) {
     const body = this.bodies[b], rows = this.motion.rows[b];
-    const line = (name, k, what, factor, colour) => ({ name, colour, value: (t) => factor * rows.at(t, k, what), points: (from, to, step) => sampled(rows, k, what, factor, from, to, step) });
+    const line = (name, k, what, factor, colour) => ({ name, colour, value: (t) => factor * rows.at(t, k, what), points: (from, to, step) => sampled({ t: rows.t, at: (t) => factor * rows.at(t, k, what), stored: (i) => factor * rows.stored(i, k, what) }, from, to, step) });
     const mass = body.inertia;
     if (body.motion === "pivot") {
       const plots = [
@@ -38,18 +38,33 @@ class Curves {
     ];
   }
 
+  // The body by whose hinge what presses on `side` reaches body b; negative where it is a part of that one, null where it does not.
+  reached(side, b) {
+    let hinge = -1;
+    for (; side >= 0; side = this.bodies[side].on) {
+      if (side === b) return hinge;
+      if (this.bodies[side].motion === "pivot") hinge = side;
+    }
+    return null;
+  }
+
   // The moment of all contact forces about a pivot (N·m), at the instants for which forces are known.
   torque(b) {
     if (this.torques.has(b)) return this.torques.get(b);
-    const own = this.contacts.all.filter((one) => one.force && (one.a[0] === b || one.b[0] === b));
+    const own = this.contacts.all.filter((one) => one.force && [one.a[0], one.b[0]].some((side) => this.reached(side, b) !== null));
     if (!own.length) { this.torques.set(b, null); return null; }
     const value = (t) => {
       const poses = this.motion.poses(t);
       let sum = 0;
       for (const one of own) {
         if (!one.holds(t)) continue;
-        const [x, y, nx, ny] = one.touch(this.view, poses), force = one.on(b, t, nx, ny);
-        if (force) sum += (x - poses[3 * b]) * force[1] - (y - poses[3 * b + 1]) * force[0];
+        const [x, y, nx, ny] = one.touch(this.view, poses);
+        for (const side of [one.a[0], one.b[0]]) {
+          const hinge = this.reached(side, b), force = hinge === null ? null : one.on(side, t, nx, ny);
+          if (!force) continue;
+          const [px, py] = hinge < 0 ? [x, y] : [poses[3 * hinge], poses[3 * hinge + 1]];
+          sum += (px - poses[3 * b]) * force[1] - (py - poses[3 * b + 1]) * force[0];
+        }
       }
       return sum;
     };
@@ -60,32 +75,28 @@ class Curves {
       for (let i = 0; i < one.closed.length; i++) { const d = 1e-9 * Math.max(1, Math.abs(one.closed[i])); times.push(one.closed[i] - d, one.closed[i]); }
     }
     const t = Float64Array.from(new Set(times)).sort(), y = Float64Array.from(t, value);
-    const points = (from, to) => {
-      const found = [[from, value(from)]];
-      for (let i = upTo(t, from); i < t.length && t[i] < to; i++) found.push([t[i], y[i]]);
-      found.push([to, value(to)]);
-      return found;
-    };
+    const known = { t, at: value, stored: (i) => y[i] };
+    const points = (from, to, step) => sampled(known, from, to, 4 * step);
     const made = { value, points };
     this.torques.set(b, made);
     return made;
   }
 }
 
-// Points of a coordinate between two times: every row, and as many between that none are more than `step` apart.
-const sampled = (rows, k, what, factor, from, to, step) => {
-  const found = [[from, factor * rows.at(from, k, what)]], t = rows.t;
+// Points of a curve between two times: every one that is stored, and as many between that none are more than `step` apart.
+const sampled = (curve, from, to, step) => {
+  const { t } = curve, found = [[from, curve.at(from)]];
   let last = from;
   const fill = (until) => {
     const parts = Math.min(Math.ceil((until - last) / step), 4000);
-    for (let p = 1; p < parts; p++) { const at = last + ((until - last) * p) / parts; found.push([at, factor * rows.at(at, k, what)]); }
+    for (let p = 1; p < parts; p++) { const at = last + ((until - last) * p) / parts; found.push([at, curve.at(at)]); }
   };
   for (let i = upTo(t, from); i < t.length && t[i] < to; i++) {
     fill(t[i]);
-    found.push([t[i], factor * rows.stored(i, k, what)]);
+    found.push([t[i], curve.stored(i)]);
     last = t[i];
   }
   fill(to);
-  found.push([to, factor * rows.at(to, k, what)]);
+  found.push([to, curve.at(to)]);
   return found;
 };

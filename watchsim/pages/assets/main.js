@@ -171,7 +171,7 @@ const resize = () => {
   plots.stale(); dirty = true;
 };
 
-let last = 0, trackKey = "", changed = 0, coarse = false; // ms of the last frame in which something was new; was it drawn as one of many?
+let last = 0, trackKey = "", changed = 0, coarse = false, cursor; // ms of the last frame in which something was new; was it drawn as one of many?
 const STILL = 250; // ms without news after which the solids are drawn as finely as they can be
 const frame = (now) => {
   const seconds = Math.min((now - last) / 1000, 0.1);
@@ -179,7 +179,8 @@ const frame = (now) => {
   last = now;
   if (!player) { requestAnimationFrame(frame); return; }
   const moving = player.playing || (dirty && now - changed < STILL);
-  if (player.tick(seconds)) { plots.hold(player.t); dirty = true; }
+  if (player.tick(seconds)) dirty = true;
+  if (player.t !== cursor) { plots.hold(player.t); cursor = player.t; } // stepped or played out of what the plots show
   if (coarse && !moving && now - changed > STILL) dirty = true;
   if (dirty || plots.dirty) {
     dirty = plots.dirty = false;

@@ -43,7 +43,7 @@ class Rows {
       const missed = d - 0.5 * (u0 + u1) - (a0 - a1) / 12; // what the cubic falls short of the way between the rows
       return (cubic + (Math.abs(missed) > this.noise[k] ? 30 * missed * (s * (1 - s)) ** 2 : 0)) / step;
     }
-    return (a0 + s * (6 * (u1 - u0) - 4 * a0 - 2 * a1 + s * (3 * (a0 + a1) - 6 * (u1 - u0)))) / (step * step);
+    return (a0 + s * (a1 - a0)) / (step * step); // not the slope of u, which takes a jump too small to be kept for a torque
   }
 }
 

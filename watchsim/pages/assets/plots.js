@@ -1,5 +1,6 @@
 // Plots under each other with one time axis and one cursor. Drawn by uPlot; here is what they show and how they are moved.
 const SIDES = [8, 12, 0, 0], AXIS = 50, FOOT = 24, SHORTEST = 1e-6;
+const LEAST = 1e-3; // of the largest torque or force: a smaller range, which may be rounding, does not fill a panel
 
 const decimals = (step) => { for (let k = 0; k < 9; k++) if (Math.abs(step * 10 ** k - Math.round(step * 10 ** k)) < 1e-6) return k; return 9; };
 
@@ -89,7 +90,7 @@ class Plots {
   // What uPlot gets once: colours are asked for at every drawing, the cursor goes where the player is and nowhere else.
   options(panel) {
     const colour = (name) => () => this.look[name], still = () => null;
-    const font = "11.5px sans-serif", grid = { stroke: colour("grid"), width: 1 }, axis = { stroke: colour("faint"), font, grid };
+    const font = "12px sans-serif", grid = { stroke: colour("grid"), width: 1 }, axis = { stroke: colour("faint"), font, grid };
     const labels = (_, splits, __, ___, step) => splits.map((value) => minus(value.toFixed(decimals(step))));
     // At the ends of the time axis stand its unit and the second that it counts from.
     const times = (chart, splits, _, __, step) => {
@@ -143,12 +144,21 @@ class Plots {
     }
   }
 
+  // The largest size of a plot's curves in all of the window.
+  largest(panel) {
+    const step = (this.end - this.start) / 500;
+    panel.most ??= Math.max(...panel.lines.map((line) => line.points(this.start, this.end, step).reduce((most, [, y]) => Math.max(most, Math.abs(y)), 0)));
+    return panel.most;
+  }
+
   // Give uPlot the points of what is shown, in the units of the axes; all of them, it keeps the spikes itself.
   fill(panel) {
     const { chart } = panel, [from, to] = this.range, scale = timeScale(from, to);
     const curves = panel.lines.map((line) => line.points(from, to, (to - from) / Math.max(chart.width - AXIS, 50)));
     let low = Infinity, high = -Infinity;
     for (const curve of curves) for (const [, y] of curve) { low = Math.min(low, y); high = Math.max(high, y); }
+    const least = panel.metric ? LEAST * this.largest(panel) : 0;
+    if (high - low < least) { const lack = 0.5 * (least - (high - low)); low -= lack; high += lack; }
     const size = Math.max(Math.abs(low), Math.abs(high));
     const [factor, prefix] = panel.metric ? PREFIXES.find(([least]) => size >= least) ?? [1e-12, "p"] : [1, ""];
     panel.factor = factor;

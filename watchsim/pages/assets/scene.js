@@ -48,7 +48,9 @@ class Scenery {
     for (const { body, path, off } of this.ghost) {
       const [x, y, angle] = poses.slice(3 * body, 3 * body + 3);
       view.place(ctx, [x + off[0], y + off[1], angle], 0);
-      ctx.strokeStyle = look.accent; ctx.lineWidth = 1.3 / view.scale; ctx.setLineDash([5 / view.scale, 3 / view.scale]);
+      // Light below and dashes above: seen on parts of any colour.
+      ctx.strokeStyle = look.paper; ctx.lineWidth = 4 / view.scale; ctx.stroke(path);
+      ctx.strokeStyle = look.accent; ctx.lineWidth = 2 / view.scale; ctx.setLineDash([6 / view.scale, 3 / view.scale]);
       ctx.stroke(path); ctx.setLineDash([]);
     }
   }
