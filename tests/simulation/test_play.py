@@ -107,6 +107,19 @@ def test_a_pivot_off_the_centre_of_mass_hangs_as_a_double_pendulum() -> None:
     assert aside == pytest.approx(OFF * np.sin(known[0]), abs=1e-8 * OFF)
 
 
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_a_shaft_that_falls_through_its_hole_is_stopped_by_dry_friction_and_stays_so(way: float) -> None:
+    """It was held by dry friction of twice the size, which drove it backwards while nothing touched it."""
+    spin, slowing, times = 1.0, 2500.0, np.linspace(0.0, 1.2e-3, 25)
+    more = f'[[damping]]\nbody = "wheel"\ncoulomb = "{slowing * INERTIA} N·m"'
+    run = simulate(shaft(0.0, math.pi, way * spin, more, duration=1.2e-3))
+    found = frames(run.scene, run.slices, run.sample(times)[0])["wheel"]
+    moving = np.minimum(times, spin / slowing)
+    assert way * found[:, 2] == pytest.approx(spin * moving - 0.5 * slowing * moving**2, rel=1e-9, abs=1e-13)
+    assert found[:, 1] - found[0, 1] == pytest.approx(-0.5 * G * times**2, rel=1e-9, abs=1e-15)
+    assert run.energy["residual_relative"] < 1e-9
+
+
 def test_time_stepping_converges_to_it() -> None:
     scene = shaft(5.0, 0.5, duration=2e-3)
     exact = simulate(scene).end_q

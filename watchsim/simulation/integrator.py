@@ -311,7 +311,7 @@ def first_turn(model, regime, q, u):
     """First time in an exact flight at which a bearing with dry friction comes to a stop; infinity if none does."""
     first = math.inf
     for i in range(len(model.coordinates)):
-        if regime.awake[i] and model.coordinates[i].coulomb > 0.0:
+        if regime.awake[i] and regime.grip[i] != STICK and model.coordinates[i].coulomb > 0.0:
             if regime.grip[i] * u[i] < 0.0:
                 return 0.0  # it turned at the very end of the last flight
             first = min(first, turning_time(model.coordinates[i], regime.grip[i], q[i], u[i]))

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.contact.cell_lookup import along
-from watchsim.contact.gaps import place_body
+from watchsim.contact.gaps import STICK, place_body
 from watchsim.jit import hot_kernel, kernel
 from watchsim.model import FREE
 from watchsim.simulation.options import longest_step
@@ -313,14 +313,15 @@ def flight_length(model, regime, q, u, options, time):
 
 @kernel
 def begin_flight(model, regime, q, u, time, length, out_step):
-    """Make the current step an exact flight of all awake coordinates."""
+    """Make the current step an exact flight of all awake coordinates; dry friction may hold the shaft of a loose body."""
     step = out_step
     step.span.kind = FLIGHT
     step.span.start, step.span.length = time, length
     for i in range(len(model.coordinates)):
-        step.q[i], step.u[i], step.awake[i], step.grip[i] = q[i], u[i], regime.awake[i], regime.grip[i]
+        step.q[i], step.u[i], step.grip[i] = q[i], u[i], regime.grip[i]
+        step.awake[i] = 0 if regime.grip[i] == STICK else regime.awake[i]
         step.bound[i] = 0.0
-        if regime.awake[i]:
+        if step.awake[i]:
             step.bound[i] = acceleration_bound(model.coordinates[i], regime.grip[i], q[i], u[i])
 
 
