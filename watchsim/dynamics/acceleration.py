@@ -281,9 +281,16 @@ def _mode_of(closed, i, m, elements, bearings, system, problem):
     return STICK
 
 
+AT_LIMIT = 1e-12  # of the friction of a bearing
+
+
 @kernel
 def _decide_grips(m, bearings, problem, system, out_grip):
-    """The grips of the bearings that stood; those held get no inverse mass, those that begin to move their friction."""
+    """The grips of the bearings that stood; those held get no inverse mass, those that begin to move their friction.
+
+    One that contacts hold as well, at the limit of its friction, has that friction as a force. Else loads would be shared anew
+    between it and the contacts, which may pass the limit at once, and the same would be decided again.
+    """
     rows = 2 * m + bearings + problem.last.sliders
     for p in range(bearings):
         i, row = problem.bearing[p], 2 * m + p
@@ -291,6 +298,9 @@ def _decide_grips(m, bearings, problem, system, out_grip):
         terms = row_terms(system, problem.drag, m, rows, row) + system.inverse[i] * system.dry[i]
         if abs(moves) > ACCELERATION_ROUNDING * terms:
             out_grip[i] = FORWARD if moves > 0.0 else BACKWARD
+            system.h[i] -= out_grip[i] * system.dry[i]
+        elif m > 0 and abs(system.force[row]) >= (1.0 - AT_LIMIT) * system.dry[i]:
+            out_grip[i] = BACKWARD if system.force[row] > 0.0 else FORWARD
             system.h[i] -= out_grip[i] * system.dry[i]
     for p in range(problem.last.sliders):
         i = problem.bearing[bearings + p]
