@@ -17,13 +17,18 @@ from matplotlib.colors import to_rgb
 from matplotlib.path import Path as ClosedPath
 from pages.browser import opened
 from pages.pace import played
+from render.colour_vision import lab, linear
 from scipy.ndimage import maximum_filter, minimum_filter
+from shapely.affinity import affine_transform
+from shapely.geometry import LineString, Point, Polygon
+from shapely.ops import unary_union
 
 from watchsim.analysis.forces import forces
 from watchsim.analysis.sound import BLOW
 from watchsim.analysis.timeline import shown_beats
 from watchsim.geometry.loops import polyline
 from watchsim.pages.compare_page import comparison_page
+from watchsim.pages.player import drawn_parts
 from watchsim.pages.report_page import page_text, report
 from watchsim.pages.tolerance_page import tolerance_page
 from watchsim.paths import profiles_dir
@@ -389,6 +394,50 @@ def test_solids_from_above_lie_on_the_flat_picture_in_its_colours(run: Trajector
             same = filled(solid, finish.fill)[inside]
             assert inside.sum() > 100 and same.mean() > 0.85, (finish, same.mean())  # roller and spring cover the fork
         assert silent(page) and set(page.asked) == {written.absolute().as_uri()}
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_a_frame_in_space_has_the_colours_of_the_palette(run: Trajectory, written: Path, scheme: str) -> None:
+    """Seen from above, at pixels chosen by geometry alone: in one part, 3 pixels from its edges, and in or near no other."""
+    random, t = np.random.default_rng(1), float(run.t[-1]) - 0.21
+    found = {name: rows[0] for name, rows in poses(run, np.array([t])).items()}
+    shapes = []
+    for part in drawn_parts(run.scene, 0.03):
+        rings = [(Polygon(polyline(loop, 2e-7)).buffer(0.0), loop.hole) for loop in part.outlines]
+        bare = unary_union([ring for ring, hole in rings if not hole]).difference(
+            unary_union([ring for ring, hole in rings if hole])
+        )
+        x, y, angle = found[part.body].tolist()
+        c, s = np.cos(angle), np.sin(angle)
+        shapes.append((part, affine_transform(bare, [c, -s, s, c, x, y]), (x, y, c, s)))
+    coils = [LineString(spring.line(found, 2000)).buffer(1e-4) for spring in hairsprings(run.scene)]
+    off: dict[str, list[float]] = {}
+    with opened(written, scheme=scheme) as page:
+        page.evaluate("watchsim.mark(false, false)")
+        page.evaluate("t => { watchsim.seek(t); watchsim.space(0, 0); }", t)
+        page.wait_for_timeout(600)
+        text = page.evaluate("t => { watchsim.seek(t); return document.getElementById('solid').toDataURL(); }", t)
+        shown = iio.imread(io.BytesIO(base64.b64decode(text.split(",", 1)[1])))
+        ratio = page.evaluate("document.getElementById('solid').width / document.getElementById('solid').clientWidth")
+        ends = np.array(page.evaluate("watchsim.seen('wheel', [[0, 0], [1e-3, 0]])"))
+        edge = 3.0 * 1e-3 / float(np.hypot(*(ends[1] - ends[0])))
+        for part, shape, (x, y, c, s) in shapes:
+            others = unary_union([other for one, other, _ in shapes if one is not part] + coils)
+            free = shape.buffer(-edge).difference(others.buffer(edge))
+            if free.is_empty:
+                continue
+            low, high = np.array(free.bounds[:2]), np.array(free.bounds[2:])
+            inside = [point for point in random.uniform(low, high, (3000, 2)).tolist() if free.contains(Point(point))][:60]
+            local = [[c * (px - x) + s * (py - y), c * (py - y) - s * (px - x)] for px, py in inside]
+            pixels = ratio * np.array(page.evaluate("([n, p]) => watchsim.seen(n, p)", [part.body, local])).reshape(-1, 2)
+            for column, row in pixels.astype(int).tolist():
+                if 0 <= row < shown.shape[0] and 0 <= column < shown.shape[1]:
+                    seen = f"#{bytes(shown[row, column, :3].tolist()).hex()}"
+                    off.setdefault(part.layer, []).append(
+                        float(np.linalg.norm(lab(linear(seen)) - lab(linear(part.finish.fill))))
+                    )
+    assert {"TEETH", "STONES", "ARMS", "RIM"} <= set(off) and sum(map(len, off.values())) > 150
+    assert max(max(values) for values in off.values()) < 3.0, {layer: max(values) for layer, values in off.items()}
 
 
 def test_solids_are_turned_chosen_and_put_away(run: Trajectory, written: Path) -> None:

@@ -23,7 +23,15 @@ from watchsim.render.parts import Part, pose_matrix, working
 from watchsim.storage.write import write_file
 
 VIEWS, ACROSS = 9, 3
-WIDE, VIEW, PLOT, HEAD, FOOT, DPI = 10.0, 3.0, 3.2, 1.25, 0.6, 150  # inches: letters are read where a page shows it 700 px wide
+WIDE, VIEW, PLOT, HEAD, FOOT, DPI = (
+    10.0,
+    2.35,
+    3.0,
+    0.65,
+    0.6,
+    150,
+)  # inches: letters are read where a page shows it 700 px wide
+TITLES, ABOVE = 0.72, 0.75  # inches: over a view, and over the plot with its key
 ROOM = 1.15  # of the reach of what touches: half the side of a view
 BEFORE_AFTER = 12.0  # degrees of the led body that the plot shows beyond the first and last happening
 MOMENTS = ("free", "back", "leaves", "meets")  # in this order of importance
@@ -39,11 +47,12 @@ def _figure(found: Turn) -> Figure:
     story = happenings(found)
     chosen = _moments(found, story)
     rows = max(1, math.ceil(len(chosen) / ACROSS))
-    tall = HEAD + rows * VIEW + PLOT + FOOT
+    tall = HEAD + rows * (TITLES + VIEW) + ABOVE + PLOT + FOOT
     figure = Figure(figsize=(WIDE, tall), facecolor=BACKGROUND)
     FigureCanvasAgg(figure)
-    margins = {"left": 0.07, "right": 0.93, "bottom": FOOT / tall, "top": 1.0 - HEAD / tall, "hspace": 0.3, "wspace": 0.06}
-    grid = figure.add_gridspec(rows + 1, ACROSS, height_ratios=[*([VIEW] * rows), PLOT], **margins)
+    sides, low = {"left": 0.05, "right": 0.95}, FOOT + PLOT + ABOVE
+    views = {**sides, "bottom": low / tall, "top": 1.0 - (HEAD + TITLES) / tall, "hspace": TITLES / VIEW, "wspace": 0.04}
+    grid = figure.add_gridspec(rows, ACROSS, **views)
     shapes = working(found.scene, 2e-7, 2e-4)
     box = _box(found)
     for number, (row, words) in enumerate(chosen):
@@ -51,10 +60,10 @@ def _figure(found: Turn) -> Figure:
         _view(axes, found, row, shapes, box)
         heading = words.replace(": ", ":\n")
         axes.set_title(f"{number + 1}   {heading}", fontsize=9.5, color=INK, loc="left")
-    plot = figure.add_subplot(grid[rows, :])
+    plot = figure.add_subplot(figure.add_gridspec(1, 1, **sides, bottom=FOOT / tall, top=(FOOT + PLOT) / tall)[0])
     _plot(plot, found, story, [row for row, _ in chosen])
-    figure.text(0.07, 1.0 - 0.3 / tall, found.scene.title, fontsize=14, fontweight="bold", color=INK)
-    figure.text(0.07, 1.0 - 0.53 / tall, f"turned by hand, no forces: {verdict(found)[1]}", fontsize=11, color=INK)
+    figure.text(0.05, 1.0 - 0.3 / tall, found.scene.title, fontsize=14, fontweight="bold", color=INK)
+    figure.text(0.05, 1.0 - 0.53 / tall, f"turned by hand, no forces: {verdict(found)[1]}", fontsize=11, color=INK)
     return figure
 
 
@@ -175,11 +184,11 @@ def _plot(axes: Axes, found: Turn, story: list[Happening], moments: list[int]) -
         if not side.get_lines():
             side.set_yticks([])
     for number, row in enumerate(moments):
-        top = 1.0 if number % 2 == 0 else 0.95
+        top = 1.01 if number % 2 == 0 else 1.06
         at = factor[led] * cycle.rows[row][led]
         axes.axvline(at, color=GRID, linewidth=1.0, zorder=0)
         axes.text(
-            at, top, str(number + 1), fontsize=9, color=CONTACT, ha="center", va="top", transform=axes.get_xaxis_transform()
+            at, top, str(number + 1), fontsize=9, color=CONTACT, ha="center", va="bottom", transform=axes.get_xaxis_transform()
         )
     here = [factor[led] * cycle.rows[min(one.row, len(cycle.rows) - 1)][led] for one in story] or list(factor[led] * q[:, led])
     room = BEFORE_AFTER if unit[led] == "°" else 0.05 * (max(here) - min(here) + 1e-3)
@@ -189,7 +198,9 @@ def _plot(axes: Axes, found: Turn, story: list[Happening], moments: list[int]) -
         side.tick_params(colors=FAINT, labelcolor=INK)
         for spine in side.spines.values():
             spine.set_color(GRID)
-    axes.set_facecolor("white")
+    axes.set_facecolor(BACKGROUND)
     axes.grid(color=GRID, linewidth=0.5)
     handles = [line for side in (axes, right) for line in side.get_lines() if not str(line.get_label()).startswith("_")]
-    axes.legend(handles=handles, fontsize=9, frameon=False, loc="center left")
+    axes.legend(
+        handles=handles, fontsize=9, frameon=False, loc="lower left", bbox_to_anchor=(0.0, 1.1), ncols=3, borderaxespad=0.0
+    )
