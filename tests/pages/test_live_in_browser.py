@@ -48,7 +48,11 @@ def test_time_view_and_zoom_are_kept_and_the_old_outline_is_a_ghost(tmp_path: Pa
         assert before["ghost"] == 0 < after["ghost"]
         page.press("body", "g")
         assert page.evaluate("watchsim.live().ghost") == 0
-        assert "design.lock" in page.inner_text("#outcome") and "dxf" not in page.inner_text("#outcome")
+        assert (
+            page.locator("#outcome th", has_text="lock").count()
+            and "design" not in page.inner_text("#outcome")
+            and "dxf" not in page.inner_text("#outcome")
+        )
         until(page, "document.querySelectorAll('#sheet > section').length > 3 && document.querySelector('.verdict') !== null")
         assert page.said == []
         assert {address.partition("/")[2].partition("/")[2].partition("/")[0] for address in page.asked} == {follower.address}

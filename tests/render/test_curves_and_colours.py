@@ -352,6 +352,8 @@ def test_a_key_has_every_colour_that_lies_behind_forces() -> None:
     shades = {to_rgba(one.get_facecolor()) for axes in made.axes for one in axes.patches}
     assert len(shades) > 4 and shades <= {to_rgba(one.get_facecolor()) for one in made.artists if isinstance(one, Patch)}
     assert {"impulse on stone", "impulse on tooth"} <= {one.get_text() for one in made.texts}
+    recoiling = ws.plot_forces(ws.simulate("profiles/grasshopper", 3.0))
+    assert {"impulse", "recoil"} <= {one.get_text() for one in recoiling.texts}
 
 
 @pytest.mark.parametrize("vision", VISIONS)

@@ -16,6 +16,7 @@ import watchsim as ws
 from watchsim.cli import main
 from watchsim.commands.console import FINE
 from watchsim.mechanism.check import notes
+from watchsim.paths import profiles_dir
 from watchsim.scene.errors import SceneError
 from watchsim.scene.forces import Contact, Side, Spring, Torque
 from watchsim.scene.load import load
@@ -479,3 +480,13 @@ def test_what_a_coaxial_escapement_touches_itself_with_is_named_by_roles() -> No
         ("banking", "PINS", "banking"),
         ("lever", "ARMS", "lever"),
     }
+
+
+def test_only_what_a_detent_carries_is_a_passing_spring() -> None:
+    """Pallets that are hinged on a pendulum also lie on what carries them."""
+    named = {}
+    for profile in ("detent", "grasshopper"):
+        scene = load(profiles_dir() / profile)
+        named[profile] = {text for _, _, text in touching(scene, with_anchor(scene))}
+    assert {"passing spring", "discharging jewel"} <= named["detent"]
+    assert not {"passing spring", "discharging jewel"} & named["grasshopper"]

@@ -26,7 +26,7 @@ from typing import TYPE_CHECKING, Any
 
 from watchsim.live.edit import knobs, values
 from watchsim.scene.errors import SceneError
-from watchsim.scene.keys import DESIGN
+from watchsim.scene.keys import DESIGN, in_words
 from watchsim.scene.load import load_set
 from watchsim.scene.scene import Scene
 
@@ -275,6 +275,7 @@ def _compared(reference: Side | None, side: Side) -> dict[str, Any]:
     changed, design = changed_rows(found), f"{DESIGN}."
     if any(key.startswith(design) for key, *_ in changed):  # the drawings follow from its dimensions
         changed = [row for row in changed if not row[0].endswith(".drawing")]
+    changed = [[in_words(key), *values] for key, *values in changed]
     results = result_rows(found, SHOWN)
     return {"first": reference is None, "changed": changed, "results": results, "off": found.off, "message": side.message}
 

@@ -114,7 +114,7 @@ def plot_forces(
     found = curves(run, spans)
     pairs = list(dict.fromkeys(name for one in found for name in one.normal))
     pivots = list(dict.fromkeys(name for one in found for name in one.pivots))
-    names = names_in(cycle.phases, RESTING)
+    names = names_in(cycle.phases)
     rows = len(pairs) + bool(pivots)
     if not rows:
         raise ValueError("no contact is closed there, and nothing turns on a pivot: there are no forces to plot")

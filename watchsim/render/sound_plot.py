@@ -12,7 +12,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from watchsim.analysis.sound import TONES, blows
-from watchsim.analysis.timeline import RESTING
 from watchsim.render import style
 from watchsim.render.force_plot import beat_spans
 from watchsim.render.marks import clock
@@ -51,7 +50,7 @@ def plot_sound(
     loudest = max((float(energies.max(initial=0.0)) for _, energies in heard), default=0.0)
     if loudest <= 0.0:
         raise ValueError("nothing sounds there, or no impacts were kept")
-    names = names_in(cycle.phases, RESTING)
+    names = names_in(cycle.phases)
     top, over = style.HEADING + KEY * bool(names), NAMED * LINE + 1.0
     made = style.figure(width, top + len(spans) * (over + TALL + BETWEEN) + FOOT, ax=ax)
     style.heading(made, run.scene.title, "Sound of the impacts, each named by what met what")

@@ -75,7 +75,8 @@ def _groups(found: Wear) -> dict[str, list[int]]:
     teeth = [key for key in index if key[1].startswith(TOOTH)]
     left_out = set(teeth) - {max(teeth, key=index.__getitem__)} if teeth else set()
     ranked = sorted((key for key in index if key not in left_out), key=lambda key: -index[key])
-    return {spaced(f"{body}, {place}" if body != place else body): sums[body, place] for body, place in ranked[:MOST]}
+    named = {key: key[1].lower() if key[1].isupper() else key[1] for key in ranked}  # layers in capitals are words here
+    return {spaced(f"{key[0]}, {named[key]}" if key[0] != key[1] else key[0]): sums[key] for key in ranked[:MOST]}
 
 
 def _along(found: Wear, compiled: Compiled, side: int) -> Array:

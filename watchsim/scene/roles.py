@@ -356,7 +356,7 @@ def touching(scene: Scene, found: Roles) -> Iterator[tuple[str, str | None, str]
             yield lever, sides[lever], "fork" if is_pin else "guard pin"
         elif found.wheel in sides and own in sides and lever != own:
             yield own, sides[own], "impulse stone"
-        elif own in sides and (carried := [name for name in sides if scene.body(name).on == lever]):
+        elif own in sides and lever != own and (carried := [name for name in sides if scene.body(name).on == lever]):
             yield from ((own, sides[own], "discharging jewel"), (carried[0], sides[carried[0]], "passing spring"))
         elif found.wheel in sides and lever in sides and len(layer_of(scene.body(lever), sides[lever])) == 1 < most:
             yield lever, sides[lever], "impulse stone"  # one beside the two that lock, as in a co-axial escapement
