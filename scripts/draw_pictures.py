@@ -263,7 +263,7 @@ PLOTS = (
     Exhibit(
         "phases.png",
         "The phases of a beat",
-        "The last oscillation, and its two beats at large. `--phases` prints the tables of motion and energy, too.",
+        "The last oscillation, with its two beats enlarged. `--phases` prints the tables of motion and energy, too.",
         "watchsim plot swiss --kind phases -o phases.png",
         "",
     ),
@@ -284,14 +284,14 @@ PLOTS = (
     Exhibit(
         "forces.png",
         "Forces",
-        "What the bodies of each pair press and rub, summed over their contacts, and the loads of the bearings. Impacts have impulses, not forces, and are not shown.",
+        "Normal and friction forces between the bodies of each pair, summed over their contacts, and the loads of the bearings. Impacts have impulses, not forces, and are not shown.",
         "watchsim plot swiss --kind forces -o forces.png",
         "",
     ),
     Exhibit(
         "wear.png",
         "Wear",
-        "Archard's index, load times sliding distance, for each millimetre of the true outline and extrapolated to a year, of the places that wear most; of all teeth the one that does. A corner has no length: it is a ring, with its sum below. The sums are those of `ws.wear(run)`; the page of a run shows the picture of its last beats.",
+        "Archard's index, load times sliding distance, for each millimetre of the true outline and extrapolated to a year, of the places that wear most; of the teeth, the most worn one. A corner has no length: it is a ring, with its sum below. The sums are those of `ws.wear(run)`; the page of a run shows the picture of its last beats.",
         "watchsim plot swiss --kind wear -o wear.png",
         "",
     ),
@@ -326,7 +326,7 @@ PLOTS = (
     Exhibit(
         "tape.png",
         "Paper of a timegrapher",
-        "As an instrument would write it that hears the first noise of each beat.",
+        "As an instrument that hears the first noise of each beat would write it.",
         "watchsim plot swiss --kind tape -o tape.png",
         "",
     ),
@@ -341,7 +341,7 @@ SVG or PDF (`--format svg,pdf`, or the ending of `-o`). In Python each is a func
 then that part of your figure.
 
 A figure is as wide as it will be printed: 170 mm for a page, `--width "85 mm"` (`width=85`) for a column, letters of 6 pt or more in both. Colours can
-be told apart with every kind of colour vision, and no colour stands alone: names, dashes, marks or hatching go with it. `--dark` (`watchsim.render.palette.dark`) gives any of them dark ground. The same style draws all pictures
+be distinguished with every kind of colour vision, and no colour stands alone: names, dashes, marks or hatching go with it. `--dark` (`watchsim.render.palette.dark`) gives any of them dark ground. The same style draws all pictures
 of these pages (`watchsim.render.style`). `scripts/draw_pictures.py plots` makes this page from
 
 ```

@@ -217,6 +217,11 @@ def metric(value: float, unit: str, digits: int = 6) -> str:
     return f"{shown:.12g} {_METRIC[power]}{unit}"
 
 
+def rounded(value: float, digits: int = 3) -> str:
+    """To so many digits, without an exponent up to ten million."""
+    return f"{float(f'{value:.{digits}g}'):.7g}"
+
+
 def decimals_for(step: float) -> int:
     """Decimals that make a change of `step` visible."""
     return min(max(0, -math.floor(math.log10(step) + 1e-9)), 9) if step > 0.0 else 3

@@ -137,6 +137,20 @@ def stepped(folder: Path) -> Path:
     return path
 
 
+def test_a_staff_and_its_wheel_in_one_mesh_are_cut_as_one(tmp_path: Path) -> None:
+    """They share a wall, with other chords, and a collar runs into the wheel: what is cut has no hole and no second outline."""
+    staff = trimesh.creation.cylinder(0.3, 3.0, sections=66)
+    wheel = trimesh.creation.annulus(0.3, 1.0, 0.4, sections=200)
+    collar = trimesh.creation.cylinder(0.7, 0.4, sections=140).apply_translation((0.0, 0.0, 0.3))
+    path = tmp_path / "mounted.stl"
+    trimesh.util.concatenate([staff, wheel, collar]).export(path)
+    for height, radius in ((-1e-3, 0.3), (-1e-4, 1.0), (1.5e-4, 1.0), (4e-4, 0.7)):
+        drawing = read(path, units="mm", section=height)
+        (loop,) = drawing.loops
+        assert errors(drawing) == [] and not loop.hole
+        assert [edge.radius for edge in loop.edges] == pytest.approx([1e-3 * radius], rel=1e-6)
+
+
 def inspected(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, dict[str, Any]]:
     capsys.readouterr()
     status = main(["inspect", *words, "--json"])

@@ -160,6 +160,52 @@ def test_a_proposal_is_tried_and_what_does_not_work_is_said(
     assert len(said) == len(words) and all(part in one for part, one in zip(words, said, strict=True))
 
 
+def by_hand(folder: Path, gap: float = 0.0) -> list[Path]:
+    """A Graham in two files, drawn by its rules: 30 teeth, pallets of 4.1° over seven and a half of them, lift 2°."""
+
+    def put(r: float, degrees: float, y: float = 0.0) -> tuple[float, float]:
+        return r * math.cos(math.radians(degrees)), y + r * math.sin(math.radians(degrees))
+
+    pivot, thick = 20.0 * math.sqrt(2.0), 1.43
+    teeth = [put(r, 12 * k + 45 + a) for k in range(30) for r, a in ((17, 1.2), (20, 0), (20, 0.4), (17, 6))]
+    corners = [
+        (20, 210, 14),
+        (20, 224, 0),
+        (20 - thick, 226, -16),
+        (20 - thick, 210, 0),
+        (6, 235, 0),
+        (6, 305, 0),
+        (20, 330, -14),
+    ]
+    corners += [(20, 316, 0), (20 + thick, 314, 16), (20 + thick, 330, 0), (6, 20, 0), (6, 160, 0)]
+    anchor = [(*put(r, a, pivot), math.tan(math.radians(turn) / 4.0)) for r, a, turn in corners]
+    if gap:
+        anchor.append((anchor[0][0] + gap, anchor[0][1], 0.0))
+    paths = []
+    for name, points, y, bore in (("wheel", [(*place, 0.0) for place in teeth], 0.0, 1.5), ("anchor", anchor, pivot, 1.0)):
+        document = ezdxf.new("R2010", units=ezdxf.units.MM)
+        closed = not gap or name == "wheel"
+        document.modelspace().add_lwpolyline(points, format="xyb", close=closed, dxfattribs={"layer": name})
+        document.modelspace().add_circle((0.0, y), bore, dxfattribs={"layer": "BORE"})
+        paths.append(folder / f"{name}.dxf")
+        document.saveas(paths[-1])
+    return paths
+
+
+def test_a_graham_drawn_by_hand_ticks_as_proposed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The pendulum that is not drawn is heavy enough for the torque by which the wheel keeps up."""
+    assert main(["new", *map(str, by_hand(tmp_path)), "-o", str(tmp_path / "out"), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["doubts"] == []
+    assert main(["steady", str(tmp_path / "out"), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["amplitude_deg"] == pytest.approx(4.0, abs=0.5)
+
+
+def test_of_a_part_left_out_it_is_said_that_it_may_be_what_should_touch(tmp_path: Path) -> None:
+    found = propose(by_hand(tmp_path, gap=0.02))
+    assert "Mend the drawing" in "".join(found.left_out)
+    assert "among what was left out" in found.doubts[0] and "cutting" not in "".join(found.doubts)
+
+
 @pytest.mark.parametrize("mirrored", [False, True])
 def test_where_pins_show_no_direction_both_are_tried(mirrored: bool, tmp_path: Path) -> None:
     """A pin wheel drives its pendulum one way only; in a mirror the other way."""

@@ -87,6 +87,21 @@ def test_a_wheel_by_seed(seeds: range, tmp_path: Path) -> None:
         assert math.dist(role.part.centre.at, centre) < 1e-6, f"seed {seed}"
 
 
+@pytest.mark.parametrize("lean", [0.4, 0.7, 1.1, 1.6])
+@pytest.mark.parametrize(("teeth", "way"), [(15, 1), (15, -1), (60, -1), (120, 1)])
+def test_hooks_may_lean_over_more_than_a_pitch(teeth: int, way: int, lean: float, tmp_path: Path) -> None:
+    depth, pitch, steps = min(0.25, 1.2 * TURN / teeth), TURN / teeth, [k / 12 for k in range(13)]
+    up = [(1.0 - depth * (1.0 - share), lean * share**1.5) for share in steps]
+    down = [(r, place + 0.1 + 0.35 * (1.0 - share)) for share, (r, place) in zip(steps[::-1], up[::-1], strict=True)]
+    corners = [(r, way * (k + place) * pitch) for k in range(teeth) for r, place in (*up, *down)]
+    document = ezdxf.new("R2010", units=ezdxf.units.MM)
+    places = [(10.0 * r * math.cos(angle), 10.0 * r * math.sin(angle)) for r, angle in corners[::way]]
+    document.modelspace().add_lwpolyline(places, close=True)
+    document.saveas(tmp_path / "wheel.dxf")
+    role = the_wheel(tmp_path / "wheel.dxf")
+    assert (role.teeth, lean_of(role.part)) == (teeth, way)
+
+
 @pytest.mark.parametrize("pieces", [24, 30, 64])
 @pytest.mark.parametrize("teeth", [7, 15, 60])
 def test_a_wheel_on_a_rim_of_straight_pieces(pieces: int, teeth: int, tmp_path: Path) -> None:

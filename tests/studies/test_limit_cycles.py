@@ -233,6 +233,19 @@ def test_a_shifted_pivot_takes_the_start_back(bench):
     assert 0.0 < abs(moved.amplitude_deg - steady(bench).amplitude_deg) < 0.2
 
 
+def test_a_run_instead_of_a_cycle_gives_way_as_the_search_does():
+    """The same where too small a torque leaves no cycle, so that an ordinary run says what happens."""
+    scene = ws.load(ws.profiles_dir() / "swiss_lever").set("bodies.wheel.position.1", "0.5 µm")
+    assert steady(scene.set("torques.0.value", "0 N·m")).verdict == "trips"
+
+
+def test_a_racing_wheel_is_seen_at_once():
+    """Out of mesh it makes more than a thousand turns in a second, each of them slow to follow."""
+    cycle = steady(ws.load(ws.profiles_dir() / "swiss_lever").set("bodies.wheel.position.1", "-0.3 mm"))
+    assert (cycle.found, cycle.verdict) == (False, "trips")
+    assert cycle.simulated_s < 3.0
+
+
 def test_a_start_deep_in_each_other_is_refused(bench):
     with pytest.raises(ws.SceneError, match="overlap"):
         steady(bench.set("bodies.lever.angle", "0°"))

@@ -315,7 +315,7 @@ def _solved(run: Trajectory, numbers: Mapping[str, Any]) -> str:
     count = counts.get("lcp", 0)
     if not count and not numbers["lcp_failures"]:
         return "there was no contact problem to solve"
-    solved = f"each solved to {run.worst_residual:.1g} or better"
+    solved = f"each solved to {run.worst_residual:.1g} or better" if run.worst_residual > 0.0 else "each solved exactly"
     if run.worst_residual > UNSOLVED:
         solved = f"the worst left with a residual of {run.worst_residual:.2g}"
     parts = [f"{count} contact {'problem' if count == 1 else 'problems'}, {solved}"]

@@ -380,9 +380,9 @@ def _motion(run: Trajectory, beats_shown: list[Beat]) -> Iterator[str]:
 
 
 def _places(angles: Triple, rates: Triple, shown: list[int], fast: list[bool]) -> str:
-    units = [KILO if one else 1.0 for one in fast]
     return "".join(
-        f" {math.degrees(angles[k]):10.3f} {unit * math.degrees(rates[k]):8.3f}" for k, unit in zip(shown, units, strict=True)
+        f" {math.degrees(angles[k]):10.3f} {round(math.degrees(rates[k]) * (KILO if one else 1.0), 3) + 0.0:8.3f}"
+        for k, one in zip(shown, fast, strict=True)
     )
 
 

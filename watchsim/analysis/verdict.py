@@ -44,6 +44,7 @@ from watchsim.simulation.tally import sums_of
 from watchsim.simulation.trajectory import Array, Trajectory
 from watchsim.simulation.wheel_tally import FAST, trips_of
 from watchsim.storage.columns import rows_where
+from watchsim.units import rounded, show
 
 # An amplitude settles like an exponential. Of three equal stretches of time in a row, with mean amplitudes a, b, c, what is
 # still to come after the last is (c - b) r / (1 - r) with r = (c - b) / (b - a) (Aitken).
@@ -120,7 +121,7 @@ def running_free(watch: Watch) -> tuple[float, str] | None:
     if behind.min() < least:
         start, least = float(rows[np.argmin(behind)]), float(behind.min())
     turns = (last - least - FAST * watch.pitch / watch.found.nominal_period * start) / (2.0 * np.pi)
-    return start, f"{watch.wheel} {RUNS_THROUGH}, {turns:.3g} turns from {when(start)} to {when(end)}"
+    return start, f"{watch.wheel} {RUNS_THROUGH}, {rounded(turns)} turns from {when(start)} to {when(end)}"
 
 
 def backwards(watch: Watch) -> Verdict | None:
@@ -401,9 +402,10 @@ def _torques(watch: Watch, lever: str, found: Arms, rests: Face) -> str:
 
 
 def _told_apart(first: float, second: float) -> tuple[str, str]:
-    """With as many digits as it takes."""
+    """In the unit of the larger, with as many digits as it takes."""
+    unit = torque_text(max(first, second, key=abs)).split()[-1]
     for digits in (2, 3, 5):
-        texts = torque_text(first, digits), torque_text(second, digits)
+        texts = show(abs(first), unit, digits), show(abs(second), unit, digits)
         if texts[0] != texts[1]:
             break
     return texts

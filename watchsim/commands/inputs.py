@@ -157,7 +157,7 @@ def write_start(folder: Path, files: dict[str, bytes], design: str = "") -> list
 def start_from_drawings(names: Sequence[str], output: str | None, as_json: bool, force: bool) -> None:
     """Write a folder with the scene that the drawings suggest, and the drawings it needs, whole or not at all."""
     from watchsim.commands.console import announce_compile
-    from watchsim.proposal.propose import NothingToPropose
+    from watchsim.proposal.propose import TASKS, NothingToPropose
     from watchsim.proposal.trial import tried
 
     paths = [Path(name) for name in names]
@@ -176,11 +176,11 @@ def start_from_drawings(names: Sequence[str], output: str | None, as_json: bool,
         return
     print(f"{folder}: {', '.join(names)}")
     for role in found.roles:
-        print(f"  {role.name}: {role.why}")
+        print(f"  {role.name}: {TASKS[role.task]}; {role.why}")
     for first, second in found.contacts:
         print(f"  {first} can meet {second}")
     for words in found.left_out:
-        say(f"Left out: {words}")
+        say(f"Left out: {words}.")
     for words in found.doubts:
         say(f"Doubtful: {words}.")
     say(f"{len(found.guesses)} guesses, each with its reason in {folder / 'scene.toml'}.")

@@ -27,7 +27,7 @@ def options(parser: argparse.ArgumentParser) -> None:
         "watchsim new movement.dxf -o my_watch writes a scene that drawings suggest; each guess says so, and why."
     )
     _common(parser)
-    naming = "the name of a design, such as swiss_lever, or drawings (DXF, SVG)"
+    naming = "the name of a design, such as swiss_lever, or drawings (DXF, SVG, STL, ...)"
     parser.add_argument("design", metavar="DESIGN", nargs="?", help=naming)
     parser.add_argument("rest", nargs=argparse.REMAINDER, help=argparse.SUPPRESS)
 

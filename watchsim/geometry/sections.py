@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 UPRIGHT = 1e-5  # z of the normal of a wall that counts as upright
+SLIVER = 1e-6  # m: what the chords of a shaft leave open in a bore of the same radius is narrower
 
 
 class Solid(NamedTuple):
@@ -79,26 +80,71 @@ def slabs(solids: Sequence[Solid], rounding: float) -> Iterator[Slab]:
 
 def outlines_at(solid: Solid, height: float, rounding: float) -> Iterator[Outline]:
     """What a cut at that height shows. Where the mesh is open there an outline is, too."""
-    segments = _segments(solid, height)
+    segments, backwards = _segments(solid, height)
     if len(segments):
-        for line in shapely.get_parts(shapely.line_merge(shapely.multilinestrings(shapely.linestrings(segments)))):
-            outline = _outline(shapely.get_coordinates(line), rounding)
+        lines = _lines(segments)
+        directed = np.where(backwards[:, None, None], segments[:, ::-1], segments)
+        if not solid.open_edges and not all(_bounds_material(line, directed) for line in lines):
+            lines = _lines(_united(directed, rounding))
+        for line in lines:
+            outline = _outline(line, rounding)
             if len(outline.corners) > 1:
                 yield outline
 
 
-def _segments(solid: Solid, height: float) -> Array:
-    """The pieces (n, 2, 2) in which faces meet the plane. Each edge is cut once, so that neighbours share points exactly.
+def _lines(segments: Array) -> list[Array]:
+    """Segments (n, 2, 2) that hang together, as the points of lines."""
+    merged = shapely.line_merge(shapely.multilinestrings(shapely.linestrings(segments)))
+    return [shapely.get_coordinates(line) for line in shapely.get_parts(merged)]
 
-    A vertex on the plane counts as above it.
+
+def _segments(solid: Solid, height: float) -> tuple[Array, NDArray[np.bool_]]:
+    """The pieces (n, 2, 2) in which faces meet the plane, and which of them have the solid on their right.
+
+    Each edge is cut once, so that neighbours share points exactly. A vertex on the plane counts as above it.
     """
     above = solid.vertices[:, 2] >= height
     sides = solid.sides
-    sides = sides[above[sides[:, 0]] != above[sides[:, 1]]]  # two of each face that is cut
+    cut = above[sides[:, 0]] != above[sides[:, 1]]
+    sides = sides[cut]  # two of each face that is cut
     a, b = solid.vertices[sides[:, 0]], solid.vertices[sides[:, 1]]
     share = ((height - a[:, 2]) / (b[:, 2] - a[:, 2]))[:, None]
     segments: Array = (a + share * (b - a))[:, :2].reshape(-1, 2, 2)
-    return segments[np.any(segments[:, 0] != segments[:, 1], axis=1)]
+    first, second, third = (solid.vertices[solid.faces[np.flatnonzero(cut)[::2] // 3, k]] for k in range(3))
+    normals = np.cross(second - first, third - first)[:, :2]
+    ways = segments[:, 1] - segments[:, 0]
+    backwards = ways[:, 0] * normals[:, 1] > ways[:, 1] * normals[:, 0]
+    long = np.any(ways != 0.0, axis=1)
+    return segments[long], backwards[long]
+
+
+def _windings(segments: Array, x: float, y: float) -> int:
+    """In how many bodies a point lies, by the segments that have them on their left."""
+    (x0, y0), (x1, y1) = segments[:, 0].T, segments[:, 1].T
+    crossing = (y0 > y) != (y1 > y)
+    right = x < x0[crossing] + (y - y0[crossing]) * (x1 - x0)[crossing] / (y1 - y0)[crossing]
+    return int(np.where((y1 > y0)[crossing], 1, -1)[right].sum())
+
+
+def _bounds_material(line: Array, segments: Array) -> bool:
+    """Is there material on one side of a line only?
+
+    Not where bodies of one mesh overlap or share a wall, as a staff and its bore do.
+    """
+    a, b = max(pairwise(line), key=lambda ends: float(np.hypot(*(ends[1] - ends[0]))))
+    length = float(np.hypot(*(b - a)))
+    off = min(SLIVER, 0.25 * length) / length * np.array((a[1] - b[1], b[0] - a[0]))
+    return {abs(_windings(segments, *(0.5 * (a + b) + way * off))) for way in (-1.0, 1.0)} == {0, 1}
+
+
+def _united(segments: Array, rounding: float) -> Array:
+    """The outer segments of all bodies together, on a grid of `rounding`."""
+    drawn = shapely.set_precision(shapely.multilinestrings(shapely.linestrings(segments)), rounding, mode="pointwise")
+    cells = shapely.get_parts(shapely.polygonize([shapely.union_all(shapely.get_parts(drawn), grid_size=rounding)]))
+    inside = [_windings(segments, *shapely.get_coordinates(shapely.point_on_surface(cell))[0]) != 0 for cell in cells]
+    rings = shapely.get_rings(shapely.get_parts(shapely.union_all(cells[inside], grid_size=rounding)))
+    wide = 2.0 * shapely.area(shapely.polygons(rings)) > SLIVER * shapely.length(rings)
+    return np.concatenate([np.stack((p[:-1], p[1:]), axis=1) for p in map(shapely.get_coordinates, rings[wide])])
 
 
 def _outline(points: Array, rounding: float) -> Outline:

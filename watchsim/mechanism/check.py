@@ -254,10 +254,11 @@ def _solid_lines(body: Body) -> Iterator[str]:
     if whole is not None:
         rows.append(("together", "", whole))
     width, kinds = max(len(row[0]) for row in rows), max(len(row[1]) for row in rows)
+    heaviest = _unit(max(weight.mass for _, _, weight in rows), MASSES, 1e3)
+    largest = _unit(max(weight.about((0.0, 0.0)) for _, _, weight in rows), INERTIAS)  # one for the column: it is added up
     for name, kind, weight in rows:
         x, y = (_millimetres(value) for value in weight.centre)
-        inertia = _fitting(weight.about((0.0, 0.0)), INERTIAS)
-        mass = _fitting(weight.mass, MASSES, 1e3)
+        mass, inertia = show(weight.mass, heaviest, 5), show(weight.about((0.0, 0.0)), largest, 5)
         yield f"      {name:{width}}  {kind:{kinds}}  {mass:>12}  {inertia:>16}  centre ({x}, {y}) mm"
 
 
@@ -335,5 +336,9 @@ def _load_lines(scene: Scene, body: Body, load: Weighed) -> Iterator[str]:
 
 
 def _fitting(value: float, units: tuple[str, ...], most: float = 1e4) -> str:
-    """In the first unit in which it is less than that."""
-    return show(value, next((unit for unit in units if abs(to(value, unit)) < most), units[-1]), 5)
+    return show(value, _unit(value, units, most), 5)
+
+
+def _unit(value: float, units: tuple[str, ...], most: float = 1e4) -> str:
+    """The first unit in which it is less than that."""
+    return next((unit for unit in units if abs(to(value, unit)) < most), units[-1])

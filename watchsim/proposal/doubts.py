@@ -13,11 +13,14 @@ from watchsim.proposal.pieces import CLICK, DRIVER, LEVER, NONE, OSCILLATOR, WHE
 from watchsim.proposal.roles import Role, first_of
 
 
-def doubts(roles: Sequence[Role], facings: Sequence[Facing], apart: bool, leans: bool) -> list[str]:
-    """Sentences, the gravest first. `apart`: parts were put side by side; `leans`: teeth show which way the wheel turns."""
+def doubts(roles: Sequence[Role], facings: Sequence[Facing], apart: bool, leans: bool, left_out: bool) -> list[str]:
+    """Sentences, the gravest first.
+
+    `apart`: parts were put side by side; `leans`: teeth show which way the wheel turns; `left_out`: outlines with faults were.
+    """
     moving = [role for role in roles if role.moves]
     met = {role.name for facing in facings for role, _ in facing.sides}
-    found = list(_layout(moving, facings, apart))
+    found = list(_layout(moving, facings, apart, left_out))
     if not found and len(moving) > 1:
         found += [f"{role.name} meets nothing that moves or holds it: {_cure(role)}" for role in moving if role.name not in met]
         found += _chain(roles, facings)
@@ -35,7 +38,7 @@ def doubts(roles: Sequence[Role], facings: Sequence[Facing], apart: bool, leans:
     return found
 
 
-def _layout(moving: Sequence[Role], facings: Sequence[Facing], apart: bool) -> Iterator[str]:
+def _layout(moving: Sequence[Role], facings: Sequence[Facing], apart: bool, left_out: bool) -> Iterator[str]:
     if len(moving) < 2:
         return
     cure = "give each its place with position, or draw them assembled; until then nothing acts on anything"
@@ -45,6 +48,9 @@ def _layout(moving: Sequence[Role], facings: Sequence[Facing], apart: bool) -> I
         _lie_over(one, other) for one, other in itertools.combinations(moving, 2)
     ):
         names = ", ".join(role.name for role in moving)
+        if left_out:
+            yield f"{names} never come within reach of each other: what should touch may be among what was left out"
+            return
         yield f"{names} lie side by side and never come within reach of each other, as in a layout for cutting: {cure}"
 
 

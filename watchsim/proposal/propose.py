@@ -292,7 +292,7 @@ def propose(paths: Sequence[Path], way: int = 0) -> Proposal:
     plan = Plan(title, sources, copies, roles, met, unlikely, start, amounts, places, lean or -1, why, left_out)
     mended = [words for source in sources for words in source.mended]
     while True:
-        plan.doubts = [*doubts(roles, plan.facings, bool(places), bool(lean)), *mended]
+        plan.doubts = [*doubts(roles, plan.facings, bool(places), bool(lean), bool(left_out)), *mended]
         files = {drawing.name: drawing.data for drawing in plan.drawn}
         files[SCENE] = scene_text(plan).encode()
         wrong = _overlapping(files)
@@ -327,7 +327,7 @@ def _pieces(sources: Sequence[Source]) -> tuple[list[Piece], list[str]]:
 
 def _fault(drawing: Drawing, layer: str) -> str:
     found = [one.message for one in drawing.findings if one.severity == "error" and one.layer == layer]
-    return f"{found[0]}{f' ({len(found) - 1} more)' if len(found) > 1 else ''}"
+    return f"{found[0]}{f' ({len(found) - 1} more)' if len(found) > 1 else ''}. Mend the drawing and begin again"
 
 
 def _why_nothing(sources: Sequence[Source]) -> str:

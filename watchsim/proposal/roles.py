@@ -58,27 +58,27 @@ def plain(layer: str) -> tuple[str, str]:
     return (name, number) if number.isdigit() else (layer, "")
 
 
-TIP, ROOT = 0.9, 0.25  # of a tooth's height: where its middle is taken
+SHARES = np.linspace(0.25, 0.9, 14)  # of a tooth's height: where its middle is taken
 SYMMETRIC = 0.03  # of a pitch: teeth that lean less do not lean
 
 
 def lean_of(part: Part) -> int:
     """+1 where the tips of a wheel's teeth stand ahead counter-clockwise of their roots, -1 clockwise; 0 where symmetric.
 
-    An escape wheel is made to turn that way: its teeth lock with the tip.
+    An escape wheel is made to turn that way: its teeth lock with the tip. A tooth is followed from circle to circle, since a
+    hook may lean over more than the pitch.
     """
     toothed = [(piece, piece.turned) for piece in part.pieces if piece.turned is not None and is_toothed(piece.turned)]
     if not toothed:
         return 0
     piece, symmetry = max(toothed, key=lambda pair: pair[1].outer)
     height = symmetry.outer - symmetry.inner
-    middles = [_middle(piece.rings, symmetry.centre, symmetry.inner + share * height, symmetry.fold) for share in (TIP, ROOT)]
-    tip, root = middles
-    if tip is None or root is None:
-        return 0
+    radii = symmetry.inner + SHARES * height
+    middles = [_middle(piece.rings, symmetry.centre, radius, symmetry.fold) for radius in radii.tolist()]
     pitch = 2.0 * math.pi / symmetry.fold
-    way = (tip - root + 0.5 * pitch) % pitch - 0.5 * pitch
-    return 0 if abs(way) < SYMMETRIC * pitch else 1 if way > 0.0 else -1
+    way = np.unwrap([middle for middle in middles if middle is not None], period=pitch)
+    lean = float(way[-1] - way[0]) if len(way) else 0.0
+    return 0 if abs(lean) < SYMMETRIC * pitch else 1 if lean > 0.0 else -1
 
 
 def _middle(rings: list[tuple[Floats, bool]], centre: Point, radius: float, fold: int) -> float | None:

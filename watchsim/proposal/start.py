@@ -46,7 +46,8 @@ BEATS = {True: 28800.0, False: 7200.0}  # vph
 Q_FACTOR = {True: 250.0, False: 1000.0}
 SHARE = 0.35  # of the drive's work that reaches the oscillator: usual for a lever escapement
 LIGHT = 30.0  # times the lever's inertia: a balance with less is drawn without its rim
-HEAVY = 100.0  # times the wheel's inertia: an anchor with less is drawn without its pendulum
+HEAVY = 100.0  # times the wheel's inertia: an anchor with less is drawn without its pendulum or balance
+WHOLE = {True: 100.0, False: 1e4}  # times the wheel's inertia, with the balance of a watch, the pendulum of a clock
 STEPPED = 8  # teeth: a wheel with fewer is driven step by step, as in a Geneva drive
 LIFTING = 0.2  # of the drive's work that lifts a click
 BENT = 0.5  # rad by which the spring of a click is bent at the start: its force hardly changes
@@ -98,7 +99,7 @@ def amounts_of(roles: Sequence[Role], size: float, swing: float, met: Sequence[F
     inertia = {role.name: Amount(_plate(role.part, thick), plate) for role in roles if role.moves}
     wheel, lever, swinging = (first_of(roles, task) for task in (WHEEL, LEVER, OSCILLATOR))
     if swinging is not None:
-        inertia[swinging.name] = _oscillators(inertia, swinging, lever, wheel)
+        inertia[swinging.name] = _oscillators(inertia, swinging, lever, wheel, WHOLE[watch])
     driven = _driven(roles, wheel, swinging)
     clicks = any(role.task == CLICK for role in roles)
     turned = driven if clicks and any(role.task == DRIVER and role.name == driven for role in roles) else None
@@ -228,13 +229,13 @@ def _plate(part: Part, thickness: float) -> float:
     return sum(abs(section(piece.loops).about(centre).polar) for piece in part.pieces) * thickness * STEEL
 
 
-def _oscillators(inertia: dict[str, Amount], swinging: Role, lever: Role | None, wheel: Role | None) -> Amount:
+def _oscillators(inertia: dict[str, Amount], swinging: Role, lever: Role | None, wheel: Role | None, whole: float) -> Amount:
     own = inertia[swinging.name]
     light = "what is drawn is too light to be all of it"
     if lever is not None and own.value < LIGHT * inertia[lever.name].value:
         return Amount(max(BALANCE, LIGHT * inertia[lever.name].value), f"a balance's; {light}")
     if lever is None and wheel is not None and own.value < HEAVY * inertia[wheel.name].value:
-        return Amount(HEAVY * inertia[wheel.name].value, f"with its pendulum or balance; {light}")
+        return Amount(whole * inertia[wheel.name].value, f"with its pendulum or balance; {light}")
     return own
 
 

@@ -19,7 +19,7 @@ from watchsim.scene.roles import swings
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.trajectory import Trajectory
 
-SECONDS = 3.0
+SECONDS, LONGER = 3.0, 60.0  # the longer one where the wheel brakes at first, as a swing does that is too large
 PATIENCE = 10.0  # s: a mechanism that takes longer to compute is left to its user
 STILL = 1e-6  # rad or m: what moves less in all that time does not move
 
@@ -59,6 +59,8 @@ def _run(files: Mapping[str, bytes]) -> tuple[list[str], bool]:
         scene = load(Path(folder) / "scene.toml")
         try:
             run = simulate(scene, SECONDS, progress=progress, to_the_end=False)
+            if (summary(run)["efficiency"] or 0.0) < 0.0:
+                run = simulate(scene, LONGER, progress=progress, to_the_end=False)
         except _TakesLong:
             return [f"a trial of {SECONDS:g} s takes long and was broken off: whether it works is not known"], False
     numbers = summary(run)
@@ -66,7 +68,7 @@ def _run(files: Mapping[str, bytes]) -> tuple[list[str], bool]:
 
 
 def _wrong(run: Trajectory, found: Mapping[str, Any]) -> Iterator[str]:
-    tried, judged = f"in a trial of {SECONDS:g} s", verdict(run)
+    tried, judged = f"in a trial of {run.simulated:.3g} s", verdict(run)
     if not judged.works:
         yield f"{tried} it does not work: {judged.message}"
         return
@@ -75,6 +77,8 @@ def _wrong(run: Trajectory, found: Mapping[str, Any]) -> Iterator[str]:
     if not (run.events["contact"] >= 0).any() and len(run.scene.bodies) > 1:
         yield f"{tried} nothing touches anything: no part drives another one"
         return
+    if (share := found["efficiency"]) is not None and share < 0.0:
+        yield f"{tried} the wheel drives nothing: it takes more from the swing than it gives. Try more torque"
     still = [
         body.name for body in run.scene.bodies if body.name in run.slices and np.ptp(run.q[:, run.slices[body.name]]) < STILL
     ]

@@ -13,6 +13,7 @@ from watchsim.mechanism.compile import Compiled
 from watchsim.model import OVER_TIME
 from watchsim.scene.roles import drive_direction, keeps_time, nominal_frequency, pitch, roles
 from watchsim.scene.scene import Scene
+from watchsim.units import rounded
 
 PERIODS = 4  # nominal ones, from look to look
 RACES = 50.0  # times as many teeth as the oscillator could let go in that time: nothing will lock the wheel again
@@ -22,7 +23,8 @@ LOOKS = 3  # in a row without a passage through rest and without a tooth: nothin
 class Foregone:
     """Looks at a run of a watch; `words` says what nothing will change any more, "" until then."""
 
-    def __init__(self, scene: Scene, compiled: Compiled) -> None:
+    def __init__(self, scene: Scene, compiled: Compiled, begun: float = 0.0, at: np.ndarray | None = None) -> None:
+        """Of a run that begins at the time `begun` (s) with the coordinates `at`; the scene's own by default."""
         found, hertz = roles(scene), nominal_frequency(scene)
         timed = any(table.over >= OVER_TIME for table in compiled.model.tables)
         moved = any(body.prescribed is not None for body in scene.bodies)
@@ -32,9 +34,9 @@ class Foregone:
             return
         self._compiled, self._wheel = compiled, found.wheel
         self._pitch, self._sense = pitch(scene, found.wheel), drive_direction(scene, found.wheel)
-        self._before = 0.0, np.array(compiled.relative(compiled.q[None])[0])
+        self._before = begun, np.array(compiled.relative((compiled.q if at is None else at)[None])[0])
         self._idle = 0
-        self.next = self.every
+        self.next = begun + self.every
 
     def look(self, time: float, coordinates: np.ndarray, passed: Callable[[], float]) -> bool:
         """Is it over at `time` (s), at these coordinates? `passed`: when the oscillator last passed its rest position, s; only
@@ -55,7 +57,7 @@ class Foregone:
         let_go = PERIODS * (time - since) / self.every + 1.0
         self._idle = self._idle + 1 if abs(teeth) < 0.25 and passed() < since else 0
         if teeth > RACES * let_go:
-            self.words = f"{self._wheel} races, {teeth:.3g} teeth from t = {since:.4g} s to {time:.4g} s"
+            self.words = f"{self._wheel} races, {rounded(teeth)} teeth from t = {since:.4g} s to {time:.4g} s"
         elif self._idle >= LOOKS:
             held = time - LOOKS * self.every
             self.words = f"since t = {held:.4g} s no tooth was let go, and no swing has passed its rest position"

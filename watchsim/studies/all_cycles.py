@@ -23,6 +23,7 @@ from watchsim.analysis.verdict_kinds import STOPS, TICKS, UNSETTLED
 from watchsim.dynamics.forces import stored_energy
 from watchsim.scene.errors import SceneError
 from watchsim.scene.scene import Recording
+from watchsim.simulation.foregone import Foregone
 from watchsim.simulation.runner import Run, trajectory_of
 from watchsim.simulation.state import NO_CONTACT, State, Stop, write_state
 from watchsim.simulation.trajectory import Trajectory
@@ -56,6 +57,7 @@ def run_from(loop: Loop, state: State | None, duration: float) -> Trajectory:
     if state is not None:
         write_state(run.state, state)
         run.stored_at_start = float(stored_energy(run.compiled.model, run.state.q, run.state.u))
+    run.foregone = Foregone(loop.scene, loop.compiled, at=run.state.q)
     stop = run.to_the_end(duration, None)
     if stop == Stop.INTERRUPTED:
         raise KeyboardInterrupt

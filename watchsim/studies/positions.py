@@ -179,7 +179,7 @@ class Positions:
             name: Criterion(
                 values.get(name),
                 both[category - 1],
-                "days differ by what no model of one watch holds" if name in CHANCE else NEEDED[name],
+                "a model repeats itself from day to day" if name in CHANCE else NEEDED[name],
             )
             for name, both in LIMITS.items()
         }

@@ -25,6 +25,7 @@ from watchsim.scene.scene import Scene
 from watchsim.scene.teeth import train, turns_of_a_round
 from watchsim.scene.trains import bonds, rides
 from watchsim.simulation.event_loop import EVENTS_PER_CONTACT, ROWS_PER_STEP, advance
+from watchsim.simulation.foregone import Foregone
 from watchsim.simulation.options import Options, options_of
 from watchsim.simulation.scratch import Until, new_record, new_scratch, new_until
 from watchsim.simulation.start import clear_start, directions, kinematics_at, overlapping_rows, taken_back_from
@@ -324,6 +325,7 @@ def turns(events: Events, parts: Parts) -> Events:
 def first_section(loop: Loop, parts: Parts, state: State) -> Section | NoSection:
     """The first turning point after `state`'s time at which everything else stands still; `state` is used up."""
     last, limit = float(state.clock.time), float(state.clock.time) + LONGEST * parts.period
+    foregone = Foregone(loop.scene, loop.compiled, last, state.q)
     while state.clock.time < limit:
         before, begun = copied(state), float(state.clock.time)
         found = turns(loop.on(state, begun + parts.period / LOOKS), parts)
@@ -334,6 +336,8 @@ def first_section(loop: Loop, parts: Parts, state: State) -> Section | NoSection
                 return section
         if state.clock.time - last > SILENT * parts.period:
             return NoSection(True, float(state.clock.time))
+        if foregone.look(float(state.clock.time), state.q, lambda: math.inf):  # the wheel races
+            break
     return NoSection(False, float(state.clock.time))
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from watchsim.results.tables import cell
 from watchsim.studies.axes import Axis, slug
 from watchsim.studies.point import OUTPUTS, Output
-from watchsim.units import signed, to
+from watchsim.units import rounded, signed, to
 
 if TYPE_CHECKING:  # each study loads what it needs, and a quarter of a second of scipy is for tolerances alone
     from watchsim.studies.positions import Positions
@@ -145,8 +145,8 @@ def tolerance_text(found: ToleranceStudy) -> str:
         label = by_column[name].label if name in by_column else WHETHER[name]
         lines.append(f"  {label}{known}: {', '.join(notable) or 'nothing stands out'}")
     lines += [f"  {words}: {number}" for words, number in found.failures.items()]
-    split = ", ".join(f"{name} {1e3 * value:.3g} ms" for name, value in found.seconds.items())
-    return "\n".join([*lines, f"  a sample takes {1e3 * sum(found.seconds.values()):.3g} ms of one processor: {split}"])
+    split = ", ".join(f"{name} {rounded(1e3 * value)} ms" for name, value in found.seconds.items())
+    return "\n".join([*lines, f"  a sample takes {rounded(1e3 * sum(found.seconds.values()))} ms of one processor: {split}"])
 
 
 def positions_table(found: Positions) -> Table:

@@ -64,8 +64,10 @@ class Sweep:
 
     def to_pandas(self) -> Any:
         """A DataFrame with a column for each key and each entry of the rows; ImportError where pandas is not installed."""
-        import pandas  # type: ignore[import-untyped, unused-ignore]
-
+        try:
+            import pandas  # type: ignore[import-untyped, unused-ignore]
+        except ImportError as error:
+            raise ImportError("to_pandas needs pandas, which is not installed: pip install pandas") from error
         return pandas.DataFrame({name: self.column(name) for name in (self.rows[0] if self.rows else ())})
 
     def numbers(self) -> dict[str, Any]:

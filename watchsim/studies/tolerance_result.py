@@ -37,7 +37,7 @@ from watchsim.studies.yields import (
     weighted,
     wilson,
 )
-from watchsim.units import known_unit
+from watchsim.units import known_unit, rounded
 
 SHOWN = 20  # of the worst samples
 LEAST_KNOWN = 32  # samples with an output, for what contributes to it
@@ -444,6 +444,6 @@ def _message(samples: Samples, share: Share) -> str:
             size = abs(differ[j]) / known_unit(one.unit).factor
             side = "larger" if (away[j] > 0.0) == (one.nominal >= 0.0) else "smaller"  # of a torque to the left its magnitude
             gap = "" if one.unit in ("", "°") else " "
-            traits.append(f"{in_words(space.draws[j].name)} is {size:.2g}{gap}{one.unit} {side}")
+            traits.append(f"{in_words(space.draws[j].name)} is {rounded(size, 2)}{gap}{one.unit} {side}")
     how = f"; in these, on average, {' and '.join(traits)} than in the others" if traits else ""
     return f"{first}. Most failures: {words} ({number} of {int((~samples.good).sum())}){how}"
