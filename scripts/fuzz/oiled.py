@@ -31,6 +31,7 @@ from hunt.generator.material import reach
 from hunt.generator.parts import Dice
 from hunt.views import View, perturbed, views
 
+from watchsim.scene.errors import SceneError
 from watchsim.scene.forces import Bearing, Shock, SlipLaw
 from watchsim.scene.scene import Scene
 from watchsim.simulation.simulate import simulate
@@ -145,7 +146,10 @@ def _drift(scene: Scene, base: Array, seeds: range) -> Array:
     """(samples,) `FACTOR` times how far twins have gone from the motion by then."""
     drift = np.full(SAMPLES, FLOOR)
     for seed in seeds:
-        twin = simulate(perturbed(scene, LIKE * 1e-9, abs(seed)), tolerance=1e-9, progress=_Clock())
+        try:
+            twin = simulate(perturbed(scene, LIKE * 1e-9, abs(seed)), tolerance=1e-9, progress=_Clock())
+        except SceneError:  # what touches may overlap in a twin
+            continue
         off = np.abs(motion(scene, twin) - base).max(axis=1)
         drift = np.maximum(drift, FACTOR * np.maximum.accumulate(np.nan_to_num(off, nan=1.0)))
     return drift
