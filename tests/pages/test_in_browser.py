@@ -706,7 +706,7 @@ def test_a_comparison_shows_the_old_outlines_as_ghosts_and_g_hides_them(tmp_path
             shown.append(page.evaluate("window.watchsim.ghost()"))
         assert shown[0] > 0 and shown == [shown[0], 0, shown[0]]
         assert page.said == [] and len(page.asked) == 1
-        assert "lock" in page.locator("#changed th").all_inner_texts()  # in words, not as the key "design.lock"
+        assert "lock" in page.locator("section.changed th").all_inner_texts()  # in words, not as the key "design.lock"
         ghosts = page.evaluate("JSON.parse(document.getElementById('data').textContent).ghost.parts")
     # The pallets are locked elsewhere; wheel, rod and bob are the same, and no ghost lies on their lines.
     assert {part["layer"] for part in ghosts} == {"PALLETS"}
