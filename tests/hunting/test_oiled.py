@@ -25,3 +25,10 @@ def test_what_the_hunt_found(seed: int, number: int) -> None:
     run = simulate(oiled(mechanism(seed, number), Dice(seed + 1000, number)), tolerance=1e-9)
     assert run.stop == Stop.DURATION
     assert missed(run) < 1e-9
+
+
+def test_a_run_that_comes_near_the_paradox_says_so() -> None:
+    run = simulate(oiled(mechanism(29, 81), Dice(1029, 81)), tolerance=1e-9)
+    assert run.stop == Stop.STEP_TOO_SMALL
+    assert "bar accelerates at 8.3e+06 m/s² while friction acts at arm.circle" in run.stop_message
+    assert "less friction there helps" in run.stop_message

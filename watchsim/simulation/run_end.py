@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from watchsim.contact.gaps import BACKWARD, FORWARD
 from watchsim.dynamics.lcp import LcpOutcome, Level
 from watchsim.model import PIVOT, Model
 from watchsim.simulation.coupled_motion import EXTENT, NORMAL, PARADOX, TANGENTIAL
@@ -193,6 +194,23 @@ def _cause(code: int, pairs: Sequence[Pair], bodies: Sequence[str]) -> str:
     if kind == BEARING:
         return f"dry friction in the bearing of {bodies[number]} holds or lets go"
     return _WORDS[kind].format(pairs[number])
+
+
+def accelerating(state: State, model: Model, bodies: Sequence[str], pairs: Sequence[Pair]) -> str:
+    """The body that accelerates most, in words, and the contacts that slide; "" where none slides."""
+    ids = [
+        k for k in state.regime.active[: state.instant.awake_contacts].tolist() if state.regime.mode[k] in (FORWARD, BACKWARD)
+    ]
+    if not ids:
+        return ""
+    i = int(np.argmax(np.abs(state.a) / model.coordinates.scale))
+    b = int(model.coordinates[i].body)
+    unit = "rad/s²" if model.bodies[b].motion == PIVOT or i == model.bodies[b].first + 2 else "m/s²"
+    where = "; ".join(str(pairs[k]) for k in ids[:MANY])
+    return (
+        f"{bodies[b]} accelerates at {abs(float(state.a[i])):.2g} {unit} while friction acts at {where}. Where friction nearly "
+        "jams what slides, forces grow without bound (Painlevé's paradox): less friction there helps"
+    )
 
 
 def furthest(state: State, model: Model, bodies: Sequence[str]) -> str:

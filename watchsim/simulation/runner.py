@@ -36,6 +36,7 @@ from watchsim.simulation.overlap_watch import warm_up as warm_up_watch
 from watchsim.simulation.recording import Recorder, columns_of, pairs_of, tail_length
 from watchsim.simulation.run_end import (
     Crowd,
+    accelerating,
     driven_into,
     failure_of,
     furthest,
@@ -185,6 +186,7 @@ def _words(run: Run, stop: Stop) -> str:
         Stop.LEDGER: lambda: unaccounted(run.energy()),
         Stop.UNEXPLAINED: lambda: unexplained(run.state, run.pairs),
         Stop.TOO_MANY_EVENTS: run._what_alternates,
+        Stop.STEP_TOO_SMALL: lambda: accelerating(run.state, model, bodies, run.pairs),
         Stop.FAR_AWAY: lambda: furthest(run.state, model, bodies),
     }
     words = details[stop]() if stop in details else ""
