@@ -127,7 +127,10 @@ REFUSED = [
     (["new"], "name a design"),
     (["new", "swis_lever"], 'Did you mean "swiss_lever"?'),
     (["new", "swiss_lever", "--lok", "2°"], 'Did you mean "--lock"?'),
-    (["new", "swiss_lever", "extra"], "belongs to no option"),
+    (
+        ["new", "swiss_lever", "extra"],
+        '"extra" belongs to no option. Write --DIMENSION VALUE, such as --teeth 15. For a folder',
+    ),
     (["new", "swiss_lever", "--lock", "2"], "a bare number needs a unit here"),
     (["new", "swiss_lever", "--lock", "9°", "--draw", "1°"], "design.draw"),
     (["new", "swiss_lever", "--teeth", "30"], "leave 0.3° for the stone"),

@@ -203,12 +203,20 @@ FLAT = "[scene]\nschema = 1\n"
 DISC = '[bodies.disc]\ncircle = "5 mm"\ninertia = "1 g·cm²"\n'
 SPRING = '[[springs]]\nbody = "disc"\nfrequency = "4 Hz"\n'
 END = '[run]\nduration = "0.01 s"\n'
+BOB = """<svg xmlns="http://www.w3.org/2000/svg" width="60mm" height="60mm" viewBox="0 0 60 60">
+<rect id="PALLETS" x="1" y="1" width="9" height="2"/><rect id="ROD" x="5" y="3" width="1" height="40"/>
+<circle id="BOB" cx="5" cy="45" r="5"/><circle id="PIVOT" cx="5" cy="-5" r="4"/></svg>"""
 CASES = {
     "gravity without a mass": (HEAD + DISC + END, "poised", "disc has no mass, so gravity does not turn it"),
     "mass beside inertia": (
         HEAD + DISC.replace("inertia", 'angle = "9°"\npivot = ["0 mm", "2 mm"]\nmass = "1 g"\ninertia') + END,
         "centre-of-mass",
         "taken from its outline as of a uniform plate, 2 mm beside the pivot",
+    ),
+    "mass of a drawing of which a part counts": (
+        FLAT + '[bodies.bob]\ndrawing = "bob.svg"\nlayers = ["PALLETS"]\nmass = "1 g"\nangle = "9°"\n' + END,
+        "mass-by-layer",
+        "the mass of bob is spread over what can touch, PALLETS: ROD and BOB count for nothing",
     ),
     "a lift angle that nothing hears": (
         FLAT + DISC.replace("inertia", 'angle = "9°"\ninertia') + SPRING + '[timegrapher]\nlift_angle = "50°"\n' + END,
@@ -228,6 +236,7 @@ CASES = {
 def test_said_by_check_and_by_run_once(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     text, code, words = CASES[name]
     (tmp_path / "scene.toml").write_text(text, encoding="utf-8")
+    (tmp_path / "bob.svg").write_text(BOB, encoding="utf-8")
     assert [note.code for note in notes(load(tmp_path))] == [code]
     assert main(["check", str(tmp_path)]) == FINE
     assert capsys.readouterr().out.count(words) == 1

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -10,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapely
+from simulation.moving_scenes import profile
 
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Line
@@ -129,6 +131,14 @@ def test_faults_name_bodies_layers_depth_and_place(desk, good):
     assert str(fault).startswith(heading + "  wheel and lever overlap by 0.1 mm at the start, at (")
     assert "4.9) mm (layers TEETH and polygon). Move or turn one of them" in str(fault)
     assert f"watchsim check {desk.folder}/scene.toml --png" in str(fault)
+
+
+@pytest.mark.parametrize("overlapping", ["12°", "16°", "22°"])
+def test_an_angle_at_which_a_body_is_free_is_named_and_does_free_it(overlapping):
+    swiss = profile("swiss_lever")
+    (fault,) = overlap_faults(swiss.set("bodies.wheel.angle", overlapping))
+    angle = re.search(r'wheel is free at angle = "(.*)"; `', str(fault))
+    assert angle and not overlap_faults(swiss.set("bodies.wheel.angle", angle[1]))
 
 
 def test_only_declared_pairs_are_looked_at(desk, good):

@@ -129,6 +129,20 @@ def test_star_jumper_and_finger_are_known_by_their_names(tmp_path: Path) -> None
     assert {"springs.0.stiffness", "bodies.finger.velocity"} <= keys and "timegrapher.lift_angle" not in keys
 
 
+@pytest.mark.parametrize("teeth", [7, 12])
+def test_a_finger_out_of_reach_is_no_anchor_and_a_jumper_in_the_star_is_doubted(teeth: int, tmp_path: Path) -> None:
+    jumper, finger = [(1.0, 0.5), (15.0, 1.5), (15.0, 4.0)], [(-9.5, 8.5), (-8.5, 8.5), (-9.0, 4.0)]
+    star = [(r * math.cos(a), r * math.sin(a)) for k in range(teeth) for r, a in star_points(teeth, k)]
+    pivots = [(0.0, 0.0, 0.5), (14.5, 2.5, 0.2), (-9.0, 8.0, 0.2)]
+    found = propose([drawing(tmp_path / "a.dxf", STAR=[star], JUMPER=[jumper], FINGER=[finger], PIVOT=pivots)])
+    assert {role.name: role.task for role in found.roles} == {"finger": "driver", "star": "wheel", "jumper": "click"}
+    assert any("star and jumper lie over each other, and nothing else comes within reach" in words for words in found.doubts)
+
+
+def star_points(teeth: int, k: int) -> list[tuple[float, float]]:
+    return [(6.0, math.tau * k / teeth), (3.6, math.tau * (k + 0.5) / teeth)]
+
+
 def test_two_levers_are_doubted(tmp_path: Path) -> None:
     """One more arm beside a Swiss lever."""
     path = assembly(scene_of("swiss_lever"), tmp_path / "lever.dxf", "body")
@@ -137,6 +151,16 @@ def test_two_levers_are_doubted(tmp_path: Path) -> None:
     document.modelspace().add_point((21, 0), dxfattribs={"layer": "PIVOT"})
     document.saveas(path)
     assert any("no second lever of an escapement" in words for words in propose([path]).doubts)
+
+
+@pytest.mark.parametrize(("longer", "swings_through"), [(0.0, True), (2.0, False)])
+def test_a_click_that_can_swing_through_the_teeth_is_doubted(longer: float, swings_through: bool, tmp_path: Path) -> None:
+    """Its pivot is 12.315 mm from the wheel's, its nose 7.951 mm from its pivot: 4.36 mm, and the roots are at 4 mm."""
+    x, y = (length * longer / math.hypot(7.3, 3.15) for length in (-7.3, -3.15))
+    click = [(10.0, 7.5), (3.2 + x, 4.6 + y), (3.0 + x, 3.6 + y), (10.6, 6.0)]
+    path = drawing(tmp_path / "a.dxf", RATCHET=[ratchet(16)], CLICK=[click], PIVOT=[(0.0, 0.0, 0.5), (10.3, 6.75, 0.3)])
+    doubts = propose([path]).doubts
+    assert any("no nearer to the centre than 4.36 mm, and the teeth go down to 4 mm" in one for one in doubts) is swings_through
 
 
 @pytest.mark.parametrize(

@@ -226,7 +226,12 @@ def test_a_file_keeps_its_comments(tmp_path):
     ("arguments", "all_of"),
     [
         (["lock=1°:2°", "--goal", "amplitude max"], ["lock", "has no [design]"]),
-        (["torques.0.value=-1 µN·m:-2 µN·m", "contacts.0.friction=0.1:0.2", "--goal", "beauty max"], ["first limit", "beauty"]),
+        (["torques.0.value=-1 µN·m:-1 µN·m", "contacts.0.friction=0.1:0.2", "--goal", "beauty max"], ["must differ", "beauty"]),
+        (
+            ["contacts.0.friction=0.1:0.2", "--goal", "beauty max", "--workers", "0", "--tol", "3"],
+            ["--workers", "--tol", "beauty"],
+        ),
+        (["contacts.0.friction=0.1:0.2", "--goal", "beauty max", "--set", "a.b=1", "--workers", "0"], ["--workers", "a.b"]),
         (["contacts.0.friction=0.1:0.2", "--goal", "amplitude = 290", "--keep", "rate >> 1"], ["needs a unit", "rate >> 1"]),
         (["contacts.0.friction=0.1", "--goal", "amplitude max", "--workers", "0"], ["KEY=FROM:TO", "--workers"]),
         (["contacts.0.friction=0.1:0.2"], ["name a goal"]),
@@ -246,7 +251,7 @@ def test_all_faults_at_once(capsys, arguments, all_of):
 
 def test_goals_that_cannot_be_met_are_explained():
     scene = ws.load(SWISS)
-    found = ws.improve(scene, {"torques.0.value": ("-1.1 µN·m", "-0.9 µN·m")}, "amplitude = 330°")
+    found = ws.improve(scene, {"torques.0.value": ("-0.9 µN·m", "-1.1 µN·m")}, "amplitude = 330°")
     assert not found.found and "amplitude comes to" in found.message and "-1.1 µN·m" in found.message
     with pytest.raises(SceneError, match="holds no number"):
         ws.improve(scene, {"scene.title": None}, "amplitude max")

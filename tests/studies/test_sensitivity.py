@@ -56,6 +56,7 @@ def test_what_of_a_design_can_be_varied_and_how_far():
     assert by["design.lock"].low == pytest.approx(math.radians(0.1), abs=1e-15)
     assert by["design.lock"].high == pytest.approx(math.radians(4.0))
     assert by["design.torque"].low == pytest.approx(1e-9)
+    assert (by["design.lock"].unit, by["design.torque"].unit, by["springs.0.stiffness"].unit) == ("°", "µN·m", "nN·m/rad")
     assert all(value >= by["design.lock"].low for _, value in points_of(by["design.lock"]))
 
 

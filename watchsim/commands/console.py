@@ -18,6 +18,7 @@ import tempfile
 import textwrap
 import time
 import traceback
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
 
@@ -133,6 +134,23 @@ FINE, MISSED, BAD_INPUT, GAVE_UP, FAULT, INTERRUPTED = 0, 1, 2, 3, 4, 130
 
 class InputError(ValueError):
     """Something the user gave that cannot be used; the text says what, why, and what to do."""
+
+
+@contextlib.contextmanager
+def all_at_once(wrong: list[str]) -> Iterator[Callable[..., Any]]:
+    """A function that calls others and keeps what they complain of; with what is `wrong` already, all is raised at the end."""
+    from watchsim.scene.errors import SceneError
+
+    def also(call: Callable[..., Any], *arguments: Any) -> Any:
+        try:
+            return call(*arguments)
+        except (InputError, SceneError) as error:
+            wrong.append(str(error))
+            return None
+
+    yield also
+    if wrong:
+        raise InputError("\n".join(wrong))
 
 
 def say(words: str) -> None:

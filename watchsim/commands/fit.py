@@ -11,7 +11,7 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from watchsim.commands.console import FINE, MISSED, InputError, Progress, announce_compile, check_tolerance, print_json, say
+from watchsim.commands.console import FINE, MISSED, Progress, all_at_once, announce_compile, check_tolerance, print_json, say
 
 if TYPE_CHECKING:
     from watchsim.studies.fit import Fit
@@ -45,7 +45,6 @@ def run(args: argparse.Namespace) -> int:
     from watchsim.commands.inputs import load_scene, secured_folder
     from watchsim.studies.fit import fit
 
-    check_tolerance(args.tol)
     knobs, wrong = limits_of([one for one in args.vary if "=" in one], [one for one in args.vary if "=" not in one])
     folder = None if args.output is None else Path(args.output)
     if folder is not None and folder.is_dir() and any(folder.iterdir()) and not args.force:
@@ -54,9 +53,9 @@ def run(args: argparse.Namespace) -> int:
         wrong.append(f"{args.measured}: {'is a folder' if Path(args.measured).is_dir() else 'there is no such file'}.")
     if args.workers < 1:
         wrong.append(f"--workers {args.workers}: at least one process is needed.")
-    if wrong:
-        raise InputError("\n".join(wrong))
-    scene = load_scene(args.scene, args.set)
+    with all_at_once(wrong) as also:
+        also(check_tolerance, args.tol)
+        scene = also(load_scene, args.scene, args.set)
     if folder is not None:
         secured_folder(folder, "the fitted scene")
     announce_compile()

@@ -1,6 +1,6 @@
-"""watchsim improve SCENE KEY=FROM:TO ...: which dimensions make the better watch?
+"""watchsim improve SCENE KEY=FROM:TO ...: which dimensions make a better watch?
 
-KEY is a dimension of the scene's design (lock=1.2°:3°) or any path of --set; --vary KEY gives one no limits. One KEY and
+KEY is a dimension of the scene's design (lock=1.2°:3°) or any path of --set; --vary KEY changes one without limits. One KEY and
 --goal "amplitude = 290°" is solved in seconds. Several goals of max and min give a front. Designs that do not tick count as
 worse than any that do.
 """
@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, Any
 from watchsim.commands.console import (
     FINE,
     MISSED,
-    InputError,
     Progress,
+    all_at_once,
     announce_compile,
     check_tolerance,
     parse_positive,
@@ -28,7 +28,7 @@ from watchsim.commands.console import (
 if TYPE_CHECKING:
     from watchsim.studies.goals import Better
 
-HELP = "the better watch: goals, limits, and what holds it back"
+HELP = "a better watch: goals, limits, and what holds it back"
 
 
 def options(parser: argparse.ArgumentParser) -> None:
@@ -58,7 +58,7 @@ def options(parser: argparse.ArgumentParser) -> None:
         "--tol", "--tolerance", metavar="X", type=float, help="relative error per step (default: the scene's, 1e-9)"
     )
     parser.add_argument(
-        "--workers", metavar="N", type=int, help="processes (default: 1; of a yield as many as there are processors)"
+        "--workers", metavar="N", type=int, help="processes (default: 1; for a yield as many as there are processors)"
     )
     parser.add_argument("--scheduler", metavar="ADDRESS", help="of dask.distributed, such as tcp://127.0.0.1:8786")
     parser.add_argument("--force", action="store_true", help="replace a folder that exists")
@@ -67,21 +67,22 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     from watchsim.commands.inputs import load_scene, secured_folder
-    from watchsim.studies.improve import YIELD, improve
+    from watchsim.studies.improve import YIELD, arguments, improve
     from watchsim.studies.sweep import processors
     from watchsim.units import TIME
 
-    check_tolerance(args.tol)
     knobs, wrong = limits_of(args.keys, args.vary)
     folder = None if args.output is None else Path(args.output)
     if folder is not None and folder.is_dir() and any(folder.iterdir()) and not args.force:
         wrong.append(f"-o {folder}: exists already. Choose another folder, or replace what is there with --force.")
     if args.workers is not None and args.workers < 1:
         wrong.append(f"--workers {args.workers}: at least one process is needed.")
-    if wrong:
-        raise InputError("\n".join(wrong))
-    scene = load_scene(args.scene, args.set)
-    duration = None if args.duration is None else parse_positive("--duration", args.duration, TIME)
+    with all_at_once(wrong) as also:
+        also(check_tolerance, args.tol)
+        duration = None if args.duration is None else also(parse_positive, "--duration", args.duration, TIME)
+        scene = also(load_scene, args.scene, args.set)
+        if scene is not None and (knobs or not wrong):
+            also(arguments, scene, knobs, args.goal, args.keep, args.method, args.starts, args.points)
     if folder is not None:
         secured_folder(folder, "the better scene")
     announce_compile()

@@ -1,4 +1,4 @@
-"""watchsim inspect FILE: what does this drawing hold, and what is wrong with it?
+"""watchsim inspect FILE: what is in this drawing, and what is wrong with it?
 
 Exit status 0: the drawing was read, whatever faults are listed (`watchsim check` of a scene that uses it judges them); 2: there
 was nothing that could be read.

@@ -1,7 +1,7 @@
 """watchsim listen FILE.wav: rate, beat error and amplitude of a recorded watch or clock, as a timing machine shows them.
 
 Held against the case or the backboard, a phone's microphone is good enough. Half a minute gives the rate of a watch to
-a few tenths of a second a day, as far as the recorder's own clock is right.
+a few tenths of a second a day, if the recorder's own clock is right.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""watchsim merge STUDY ...: the shards of a study made one, wherever they were computed."""
+"""watchsim merge STUDY ...: combines the shards of a study, wherever they were computed."""
 
 from __future__ import annotations
 

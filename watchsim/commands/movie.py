@@ -54,7 +54,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--zoom",
         metavar="NAMES",
-        help='frame only these bodies, separated by commas, or "all" (default: what touches, the whole small beside it)',
+        help='frame only these bodies, separated by commas, or "all" (default: what touches, with the whole as an inset)',
     )
     parser.add_argument("-o", "--output", metavar="FILE", help="file.mp4 or file.gif (default RUN/movie.mp4)")
 

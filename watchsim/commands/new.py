@@ -109,7 +109,8 @@ def _unknown(design: Design, word: str) -> str:
 
     if not word.startswith("-"):
         first = design.dimensions[0]
-        return f'"{word}" belongs to no option. Write --DIMENSION VALUE, such as {first.option} {first.default}.'
+        folder = "" if word[0].isdigit() else f" For a folder of that name write -o {word}."
+        return f'"{word}" belongs to no option. Write --DIMENSION VALUE, such as {first.option} {first.default}.{folder}'
     hint = nearest(word.partition("=")[0], [one.option for one in design.dimensions])
     known = f"watchsim new {design.name} --list lists its dimensions."
     return f"{word} is not a dimension of this design. {hint if hint.startswith('Did') else known}"

@@ -36,11 +36,11 @@ def options(parser: argparse.ArgumentParser) -> None:
         "--quantities",
         metavar="NAMES",
         default="angle,velocity",
-        help="of kinematics: angle, velocity, acceleration, separated by commas (default %(default)s)",
+        help="for kinematics: angle, velocity, acceleration, separated by commas (default %(default)s)",
     )
     parser.add_argument("--tape", action="store_true", help="the same as --kind tape: the paper of a timegrapher")
     parser.add_argument(
-        "--window", metavar="FROM:TO", help='such as "179.4 s:179.75 s" (default: the last beats, or the whole)'
+        "--window", metavar="FROM:TO", help='such as "179.4 s:179.75 s" (default: the last beats, or the whole run)'
     )
     parser.add_argument(
         "--phases",

@@ -1,6 +1,6 @@
 """watchsim report RUN: one self-contained HTML page: a player, linked plots, the timing sheet, the files.
 
-Of the results of watchsim tolerance: yield, spread, contributions, failures; of watchsim positions: its tables and the dial.
+For results of watchsim tolerance: yield, spread, contributions, failures; for watchsim positions: its tables and the dial.
 """
 
 from __future__ import annotations

@@ -273,7 +273,7 @@ def status(run: Trajectory, summary: dict[str, Any]) -> int:
         say(expected_text(entry))
     about = summary.get("verdict_details")
     if about is not None and not about["works"]:
-        say(f"The watch does not work: it {SPOKEN.get(summary['verdict'], summary['verdict'])}.")
+        say(f"It does not work: it {SPOKEN.get(summary['verdict'], summary['verdict'])}.")
         return MISSED
     return MISSED if missed else FINE
 

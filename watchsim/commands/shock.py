@@ -1,7 +1,7 @@
 """watchsim shock SCENE: what a blow does to the watch, against the same watch without it.
 
-The blow is that of ISO 1413: a hammer of 4.43 m/s comes to half a sine of 3100 g over 0.35 ms in the case; other speeds scale
-its height. With --map it strikes from 24 directions at 24 phases of the oscillation, and a picture shows what becomes of it.
+The blow is that of ISO 1413: a hammer of 4.43 m/s gives the case half a sine of 3100 g over 0.35 ms; other speeds scale
+its height. With --map it strikes from 24 directions at 24 phases of the oscillation, and a picture shows the outcome.
 """
 
 from __future__ import annotations

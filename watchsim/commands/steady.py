@@ -70,7 +70,7 @@ def text(title: str, cycle: Cycle) -> str:
 
 
 def all_cycles(cycle: Cycle) -> list[tuple[str, str]]:
-    """Every cycle, and what becomes of swings of all sizes; nothing where that was not asked for."""
+    """Every cycle, and what becomes of swings of all sizes; nothing where that was not requested."""
     lines = []
     for number, one in enumerate(cycle.cycles or (), 1):
         swings = " and ".join(f"{amplitude:.6g}°" for amplitude in one.amplitudes_deg)

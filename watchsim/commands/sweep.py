@@ -2,7 +2,7 @@
 
 KEY is any path of the scene as in --set, with units: "torques.0.value=-0.6:-1.4:9 µN·m" or "contacts.0.friction=0.1,0.12,0.15".
 Each point is the limit cycle itself (--steady, the default), or the end of a run (--duration). With --sensitivity: the
-derivatives by every number of the scene, or by the KEYs that are named.
+derivatives with respect to every number of the scene, or by the KEYs that are named.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     how.add_argument("--steady", action="store_true", help="each point by its limit cycle (the default)")
     how.add_argument("--duration", metavar="TIME", help='each point by a run of that length instead, such as "60 s"')
     parser.add_argument(
-        "--sensitivity", action="store_true", help="derivatives by every number of the scene, or by the KEYs named"
+        "--sensitivity", action="store_true", help="derivatives with respect to every number of the scene, or by the KEYs named"
     )
     add_study_options(parser)
 

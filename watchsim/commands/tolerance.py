@@ -1,7 +1,7 @@
 """watchsim tolerance SCENE: how many of the watches made to its [tolerances] work, and which dimension decides it?
 
 Each sample is a watch with all dimensions drawn within their limits, and its limit cycle (or a run, --duration). It is good if
-it ticks and gives what [expect] promises. A sample can be looked at: watchsim run STUDY --sample 213 --movie.
+it ticks and meets [expect]. A sample can be looked at: watchsim run STUDY --sample 213 --movie.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""watchsim verify: do the closed-form and published benchmarks come out?"""
+"""watchsim verify: are the closed-form and published benchmarks met?"""
 
 from __future__ import annotations
 

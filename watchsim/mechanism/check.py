@@ -15,10 +15,12 @@ from numpy.typing import NDArray
 from watchsim.contact.cell_frames import named_rows
 from watchsim.contact.cells import PairCells
 from watchsim.drawing.findings import Finding
+from watchsim.drawing.material import layer_roles
 from watchsim.geometry.loops import extents
+from watchsim.geometry.solids import section
 from watchsim.mechanism.compile import Compiled
 from watchsim.mechanism.contacts import PairCount, pair_lines, pairs_entry
-from watchsim.mechanism.overlap import overlaps
+from watchsim.mechanism.overlap import cure_of, overlaps
 from watchsim.mechanism.words import force_lines, law_words, length, place, turned
 from watchsim.scene.roles import frequency, keeps_time, loads, oscillators, partners, roles
 from watchsim.scene.scene import Body, Scene, Tolerance
@@ -78,10 +80,19 @@ def _named(compiled: Compiled, pair: Any, body: int, names: Sequence[str]) -> st
 #
 # None of it is wrong by itself; all of it is easily overlooked. `watchsim check` lists it, `watchsim run` says it first.
 
+UNCOUNTED = 0.5  # of the area that counts: with so much more drawn beside it, the mass is hardly where it is said to be
+
 
 def notes(scene: Scene) -> tuple[Finding, ...]:
     """A notice for each, with what to do."""
-    return (*_massless(scene), *_weightless(scene), *_by_outline(scene), *_unused_lift(scene), *_at_rest(scene))
+    return (
+        *_massless(scene),
+        *_weightless(scene),
+        *_by_outline(scene),
+        *_by_one_layer(scene),
+        *_unused_lift(scene),
+        *_at_rest(scene),
+    )
 
 
 def _massless(scene: Scene) -> Iterator[Finding]:
@@ -114,6 +125,25 @@ def _by_outline(scene: Scene) -> Iterator[Finding]:
             )
             cure = f"Write centre_of_mass under [bodies.{body.name}], or give solids; leave out mass if it is poised."
             yield Finding("centre-of-mass", "notice", message, cure)
+
+
+def _by_one_layer(scene: Scene) -> Iterator[Finding]:
+    """A mass alone is spread over what can touch: the bob of a pendulum is drawn, and weighs nothing."""
+    for body in scene.bodies:
+        entry = scene.source.get("bodies", {}).get(body.name, {})
+        if "mass" not in entry or {"inertia", "solids"} & set(entry) or body.motion not in ("pivot", "free"):
+            continue
+        closed = [loop for loop in (*body.loops, *body.decoration) if loop.closed and loop.layer != entry.get("pivot")]
+        kinds = layer_roles(closed)
+        drawn = [loop for loop in closed if loop.layer not in body.layers and kinds[loop.layer] == "material"]
+        if section(drawn).area > UNCOUNTED * section(loop for loop in body.loops if loop.closed).area:
+            left = list(dict.fromkeys(loop.layer for loop in drawn if not loop.hole))
+            message = (
+                f"the mass of {body.name} is spread over what can touch, {' and '.join(body.layers)}: {' and '.join(left)} "
+            )
+            message += f"{'counts' if len(left) == 1 else 'count'} for nothing"
+            cure = f"Give solids with the layers that weigh something, or inertia, under [bodies.{body.name}]."
+            yield Finding("mass-by-layer", "notice", message, cure)
 
 
 def _is_off(body: Body) -> bool:
@@ -231,7 +261,7 @@ def _solid_entry(solid: Solid) -> dict[str, Any]:
 def _overlap_findings(scene: Scene) -> Iterator[Finding]:
     for overlap in overlaps(scene):
         x, y = (1e3 * value for value in overlap.place)
-        yield Finding("overlap", "error", str(overlap), "Move or turn one of them.", x_mm=x, y_mm=y)
+        yield Finding("overlap", "error", str(overlap), f"{cure_of(scene, overlap)}.", x_mm=x, y_mm=y)
 
 
 def _body_lines(scene: Scene) -> Iterator[str]:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -25,6 +25,7 @@ from watchsim.scene.scene import Scene
 from watchsim.scene.toml import key_lines
 from watchsim.scene.trains import start_poses
 from watchsim.tolerances import CHORDS_APART, CHORDS_NEAR, DRAWING_ROUNDING, LARGEST_DRAWN, NEAR_CHORDS, SMALLEST_DRAWN
+from watchsim.units import show
 
 # Which polygons stand for the material that some outlines bound?
 #
@@ -255,7 +256,26 @@ def overlaps(scene: Scene) -> list[Overlap]:
 
 def overlap_faults(scene: Scene) -> list[Fault]:
     """The same as faults of the scene file."""
-    return faults_at(scene, ((overlap, f"{overlap}. Move or turn one of them") for overlap in overlaps(scene)))
+    return faults_at(scene, ((overlap, f"{overlap}. {cure_of(scene, overlap)}") for overlap in overlaps(scene)))
+
+
+TURNS = (0.5, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 10.0, 12.0, 15.0, 20.0, 30.0)  # °: tried in either direction
+
+
+def cure_of(scene: Scene, overlap: Overlap) -> str:
+    """What to do about it: an angle at which a body is free, where one of some small turns makes it so."""
+    before = {one.contact for one in overlaps(scene)}
+    bodies = [scene.body(side.body) for side in overlap.sides]
+    geared = {name for gear in (*scene.gears, *scene.rigid_gears) for name in gear.between}
+    turned = [body for body in bodies if body.motion == "pivot" and body.name not in geared]
+    for degrees in (sign * turn for turn in TURNS for sign in (1.0, -1.0)):
+        for body in turned:
+            there = replace(body, angle=body.angle + math.radians(degrees))
+            moved = replace(scene, bodies=tuple(there if one is body else one for one in scene.bodies))
+            left = {one.contact for one in _meetings(moved) if one.depth > one.allowed}
+            if overlap.contact not in left and left <= before:
+                return f'Move or turn one of them; {body.name} is free at angle = "{show(there.angle, "°")}"'
+    return "Move or turn one of them"
 
 
 def faults_at(scene: Scene, found: Iterable[tuple[Overlap, str]]) -> list[Fault]:

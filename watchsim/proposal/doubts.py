@@ -6,9 +6,11 @@ A guess that is written down beside twenty others is easily overlooked; what kee
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Iterator, Sequence
 
 from watchsim.proposal.facing import Facing
+from watchsim.proposal.parts import nose_of, toothing
 from watchsim.proposal.pieces import CLICK, DRIVER, LEVER, NONE, OSCILLATOR, WHEEL
 from watchsim.proposal.roles import Role, first_of
 
@@ -25,6 +27,7 @@ def doubts(roles: Sequence[Role], facings: Sequence[Facing], apart: bool, leans:
         found += [f"{role.name} meets nothing that moves or holds it: {_cure(role)}" for role in moving if role.name not in met]
         found += _chain(roles, facings)
         found += _heights(moving, facings)
+        found += _clicks(moving)
     elif not found and moving and not facings and len(roles) > 1:
         found.append(f"{moving[0].name} is all that moves, and nothing meets it: no pivot was found for the other parts")
     found += _centres(moving)
@@ -44,9 +47,16 @@ def _layout(moving: Sequence[Role], facings: Sequence[Facing], apart: bool, left
     cure = "give each its place with position, or draw them assembled; until then nothing acts on anything"
     if apart:
         yield f"the drawings do not show where the parts stand, and they were put side by side: {cure}"
-    elif not any(facing.first.moves and facing.second.moves and not facing.by_name_alone for facing in facings) and not any(
-        _lie_over(one, other) for one, other in itertools.combinations(moving, 2)
-    ):
+        return
+    if any(facing.first.moves and facing.second.moves and not facing.by_name_alone for facing in facings):
+        return
+    over = [f"{one.name} and {other.name}" for one, other in itertools.combinations(moving, 2) if _lie_over(one, other)]
+    if over and facings and all(facing.by_name_alone for facing in facings):
+        yield (
+            f"{', '.join(over)} lie over each other, and nothing else comes within reach: contacts were guessed by their names "
+            "alone. Draw the parts where they stand, each beside what it touches"
+        )
+    elif not over:
         names = ", ".join(role.name for role in moving)
         if left_out:
             yield f"{names} never come within reach of each other: what should touch may be among what was left out"
@@ -83,6 +93,21 @@ def _chain(roles: Sequence[Role], facings: Sequence[Facing]) -> Iterator[str]:
         yield (f"{rest} is no second lever of an escapement: give its layers to {between[0].name}, or leave it out")
     elif not levers and {wheel.name, swinging.name} not in pairs:
         yield f"{wheel.name} and {swinging.name} never come within reach of each other: nothing keeps {swinging.name} going"
+
+
+def _clicks(moving: Sequence[Role]) -> Iterator[str]:
+    """A click must end in the wheel: where its nose passes the line of centres between two teeth it holds nothing."""
+    wheel = first_of(moving, WHEEL)
+    teeth = None if wheel is None else toothing(wheel.part)
+    for role in moving:
+        if role.task != CLICK or role.part.centre is None or wheel is None or teeth is None:
+            continue
+        least = math.dist(role.part.centre.at, teeth.centre) - nose_of(role.part, wheel.part).arm
+        if least > teeth.inner:
+            yield (
+                f"{role.name} can swing through the teeth of {wheel.name}: its nose comes no nearer to the centre than "
+                f"{1e3 * least:.3g} mm, and the teeth go down to {1e3 * teeth.inner:.3g} mm. Move its pivot, or make it longer"
+            )
 
 
 MANY = 3  # contacts of two bodies, without names that fit: more are likely to be of several heights

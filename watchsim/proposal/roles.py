@@ -210,7 +210,7 @@ def _oscillator(rest: Sequence[Part], wheels: Sequence[Part]) -> tuple[Part, str
         return named[0], BY_NAME
     if not wheels or max(teeth_of(part) for part in wheels) < FEWEST_TEETH:
         return None
-    free = [part for part in rest if part.kind is None] or (list(rest) if len(rest) == 1 else [])
+    free = [part for part in rest if part.kind is None or (len(rest) == 1 and part.kind != DRIVER)]
     if len(rest) == 1 and free:
         return free[0], "it is the only part beside the wheel: an anchor that swings itself"
     if not free:

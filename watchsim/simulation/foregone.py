@@ -15,8 +15,9 @@ from watchsim.scene.roles import drive_direction, keeps_time, nominal_frequency,
 from watchsim.scene.scene import Scene
 from watchsim.units import rounded
 
-PERIODS = 4  # nominal ones, from look to look
-RACES = 50.0  # times as many teeth as the oscillator could let go in that time: nothing will lock the wheel again
+PERIODS = 4  # nominal ones, from look to look at what stands; a wheel that races is looked at in each of them
+RACES = 50.0  # times as many teeth as the oscillator could let go in that time,
+IN_A_ROW = 2  # in so many periods: nothing will lock the wheel again
 LOOKS = 3  # in a row without a passage through rest and without a tooth: nothing will unlock the wheel again
 
 
@@ -29,14 +30,15 @@ class Foregone:
         timed = any(table.over >= OVER_TIME for table in compiled.model.tables)
         moved = any(body.prescribed is not None for body in scene.bodies)
         self.is_watch = bool(found.wheel and keeps_time(scene) and hertz and not timed and not moved)
-        self.every, self.words, self.next = PERIODS / (hertz or 1.0), "", np.inf
+        self.period, self.words, self.next = 1.0 / (hertz or 1.0), "", np.inf
         if not self.is_watch or found.wheel is None:
             return
         self._compiled, self._wheel = compiled, found.wheel
         self._pitch, self._sense = pitch(scene, found.wheel), drive_direction(scene, found.wheel)
         self._before = begun, np.array(compiled.relative((compiled.q if at is None else at)[None])[0])
-        self._idle = 0
-        self.next = begun + self.every
+        self._looked, self._idle = [(begun, self._turned(self._before[1]))], 0
+        self._standing = begun + PERIODS * self.period
+        self.next = begun + self.period
 
     def look(self, time: float, coordinates: np.ndarray, passed: Callable[[], float]) -> bool:
         """Is it over at `time` (s), at these coordinates? `passed`: when the oscillator last passed its rest position, s; only
@@ -44,21 +46,38 @@ class Foregone:
         """
         if time < self.next:
             return False
-        self.next = (time // self.every + 1.0) * self.every
+        self.next = (time // self.period + 1.0) * self.period
         q = self._compiled.relative(coordinates[None])[0]
+        if not self._races(time, q) and time >= self._standing:
+            self._standing = (time // (PERIODS * self.period) + 1.0) * PERIODS * self.period
+            self._stands(time, q, passed)
+        return bool(self.words)
+
+    def _turned(self, q: np.ndarray) -> float:
+        """How far the wheel has gone with its drive, rad."""
+        return self._sense * float(q[self._compiled.slices[self._wheel].start])
+
+    def _races(self, time: float, q: np.ndarray) -> bool:
+        if self._pitch is None:
+            return False
+        (since, was), now = self._looked[-1], self._turned(q)
+        fast = (now - was) / self._pitch > RACES * ((time - since) / self.period + 1.0)
+        self._looked = [*self._looked, (time, now)] if fast else [(time, now)]
+        if len(self._looked) <= IN_A_ROW:
+            return False
+        since, was = self._looked[0]
+        teeth = rounded((now - was) / self._pitch)
+        self.words = f"{self._wheel} races, {teeth} teeth from t = {since:.4g} s to {time:.4g} s"
+        return True
+
+    def _stands(self, time: float, q: np.ndarray, passed: Callable[[], float]) -> None:
         (since, was), self._before = self._before, (time, q.copy())
         if np.array_equal(q, was):
             self.words = f"all has been at rest since t = {since:.4g} s"
-        column = self._compiled.slices[self._wheel].start
-        way = self._sense * float(q[column] - was[column])
         if self._pitch is None or self.words:
-            return bool(self.words)
-        teeth = way / self._pitch
-        let_go = PERIODS * (time - since) / self.every + 1.0
+            return
+        teeth = (self._turned(q) - self._turned(was)) / self._pitch
         self._idle = self._idle + 1 if abs(teeth) < 0.25 and passed() < since else 0
-        if teeth > RACES * let_go:
-            self.words = f"{self._wheel} races, {rounded(teeth)} teeth from t = {since:.4g} s to {time:.4g} s"
-        elif self._idle >= LOOKS:
-            held = time - LOOKS * self.every
+        if self._idle >= LOOKS:
+            held = time - LOOKS * PERIODS * self.period
             self.words = f"since t = {held:.4g} s no tooth was let go, and no swing has passed its rest position"
-        return bool(self.words)

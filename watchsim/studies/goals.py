@@ -18,8 +18,8 @@ from watchsim.scene.read_settings import FUNCTION
 from watchsim.scene.scene import Scene
 from watchsim.studies.axes import dimension_of
 from watchsim.studies.point import OUTPUTS, Output
-from watchsim.studies.sensitivity import quantity_at
-from watchsim.units import ANGLE, NUMBER, RATE, TIME, Dimension, UnitError, parse, show, split, to
+from watchsim.studies.sensitivity import quantity_at, unit_of
+from watchsim.units import ANGLE, NUMBER, RATE, TIME, Dimension, UnitError, parse, show, to
 
 MOST, LEAST, EQUAL, ABOVE, BELOW = "max", "min", "=", ">=", "<="
 UNITS = {"°": ANGLE, "s/d": RATE, "ms": TIME, "s": TIME, "": NUMBER, "%": NUMBER}  # of outputs
@@ -110,8 +110,10 @@ def _knob(scene: Scene, key: str, pair: tuple[Any, Any] | None, faults: list[Fau
         faults.append(Fault(key, str(error), f" = {pair[0]}:{pair[1]}" if pair else "", place=place))
         return None
     unit = unit_of(held if held is not None else pair[0] if pair else "", dimension)
+    if pair is not None:
+        low, high = sorted((low, high))  # a torque that drives clockwise is read as -0.4 to -1.6
     if pair is not None and not low < high:
-        faults.append(Fault(key, "the first limit must be below the second", f" = {pair[0]}:{pair[1]}", place=place))
+        faults.append(Fault(key, "the limits must differ", f" = {pair[0]}:{pair[1]}", place=place))
     least, most = (None, None) if quantity is None else (quantity.low, quantity.high)
     if pair is None:
         wide = sorted((value / FAR, value * FAR)) if value else [-1.0, 1.0]
@@ -125,12 +127,6 @@ def _knob(scene: Scene, key: str, pair: tuple[Any, Any] | None, faults: list[Fau
         return None
     value = 0.5 * (low + high) if math.isnan(value) else value
     return Knob(key, value, low, high, dimension, unit, pair is not None)
-
-
-def unit_of(held: object, dimension: Dimension) -> str:
-    """The unit in which the scene has the value, else one in which people read it."""
-    written = split(held)[1] if isinstance(held, str) and not isinstance(held, bool) else ""
-    return written or (dimension.usual[1] if dimension is not NUMBER else "")
 
 
 def value_at(scene: Scene, key: str) -> Any:

@@ -121,19 +121,8 @@ def improve(  # noqa: PLR0913 - options, by name
         from watchsim.scene.load import load
 
         scene = load(scene)
-    faults: list[Fault] = []
-    varied = knobs_from(scene, knobs, faults)
-    goals = aims_from([goal] if isinstance(goal, str) else goal, varied, "--goal", faults)
-    keeps = aims_from(keep, varied, "--keep", faults)
-    for name, value, least in (("method", method, None), ("starts", starts, 1), ("points", points, 2)):
-        if (least is None and value not in METHODS) or (least is not None and not least <= int(value) <= 1000):
-            faults.append(
-                Fault(name, f"choose {', '.join(METHODS)}" if least is None else f"from {least} to 1000", f" = {value}", PLACE)
-            )
+    varied, goals, keeps = arguments(scene, knobs, goal, keep, method, starts, points)
     drawn = any(one.output == YIELD for one in (*goals, *keeps))
-    if drawn and not scene.tolerances:
-        faults.append(Fault("yield", "this scene has no [tolerances], so every watch is the nominal one", place=PLACE))
-    check(varied, goals, keeps, faults)
     executor = chosen(workers, scheduler)
     search = Search(scene, varied, goals, keeps, executor, tolerance, duration, progress)
     plain = [one for one in keeps if one.output != YIELD]
@@ -147,6 +136,31 @@ def improve(  # noqa: PLR0913 - options, by name
                 return whole
             search.near(first)
     return search.result("nelder-mead" if drawn and method == "auto" else method, starts, points)
+
+
+def arguments(
+    scene: Scene,
+    knobs: Mapping[str, tuple[Any, Any] | None],
+    goal: str | Iterable[str],
+    keep: Iterable[str],
+    method: str,
+    starts: int,
+    points: int,
+) -> tuple[tuple[Knob, ...], tuple[Aim, ...], tuple[Aim, ...]]:
+    """What is varied, the goals, and the limits to keep; SceneError with all that is wrong with these arguments."""
+    faults: list[Fault] = []
+    varied = knobs_from(scene, knobs, faults)
+    goals = aims_from([goal] if isinstance(goal, str) else goal, varied, "--goal", faults)
+    keeps = aims_from(keep, varied, "--keep", faults)
+    for name, value, least in (("method", method, None), ("starts", starts, 1), ("points", points, 2)):
+        if (least is None and value not in METHODS) or (least is not None and not least <= int(value) <= 1000):
+            faults.append(
+                Fault(name, f"choose {', '.join(METHODS)}" if least is None else f"from {least} to 1000", f" = {value}", PLACE)
+            )
+    if any(one.output == YIELD for one in (*goals, *keeps)) and not scene.tolerances:
+        faults.append(Fault("yield", "this scene has no [tolerances], so every watch is the nominal one", place=PLACE))
+    check(varied, goals, keeps, faults)
+    return varied, goals, keeps
 
 
 class Search:

@@ -28,7 +28,7 @@ from watchsim.studies.point import USUAL, Output, Question, Row, outputs_named
 from watchsim.studies.steady import steady
 from watchsim.studies.sweep import Progress, computed, study_of
 from watchsim.studies.workers import Executor, Journal, chosen
-from watchsim.units import ANGLE, LENGTH, NUMBER, Dimension, UnitError, known_unit, parse
+from watchsim.units import ANGLE, LENGTH, NUMBER, Dimension, UnitError, known_unit, metric, parse, split
 
 SECTIONS = ("scene", "bodies", "springs", "torques", "damping", "contacts", DESIGN)
 # What is no dimension of the mechanism: how a drawing is read, how a body starts, vertices, what must stay a whole number.
@@ -45,13 +45,14 @@ BOUNDED |= dict.fromkeys(("restitution", "tangential_restitution"), (0.0, 1.0))
 class Quantity:
     """One number of a scene: its dotted path, its SI value, and what it is.
 
-    `step` is the larger of the two by which it is varied; `low` and `high` bound it; `change` is what a maker may get wrong:
-    1 % more, 10 µm or 0.1°, in SI, worded by `change_words`.
+    `unit` is that of the scene; `step` is the larger of the two by which it is varied; `low` and `high` bound it; `change` is
+    what a maker may get wrong: 1 % more, 10 µm or 0.1°, in SI, worded by `change_words`.
     """
 
     key: str
     value: float
     dimension: Dimension
+    unit: str
     step: float
     change: float
     change_words: str
@@ -122,7 +123,17 @@ def quantity_at(scene: Scene, key: str, value: Any) -> Quantity | None:
     except UnitError:
         return None
     change, words = change_of(number, dimension)
-    return Quantity(key, number, dimension, _step(number, dimension), change, words, *_bounds(scene, path))
+    return Quantity(
+        key, number, dimension, unit_of(value, dimension), _step(number, dimension), change, words, *_bounds(scene, path)
+    )
+
+
+def unit_of(held: object, dimension: Dimension) -> str:
+    """The unit in which the scene has the value, else one in which people read it."""
+    written = split(held)[1] if isinstance(held, str) else ""
+    if held != "" and dimension.si.startswith("N") and written in ("", dimension.si):  # `Scene.set` writes numbers in SI
+        return metric(parse(held, dimension), dimension.si).split()[1]
+    return written or (dimension.usual[1] if dimension is not NUMBER else "")
 
 
 def _bounds(scene: Scene, path: Sequence[str]) -> tuple[float | None, float | None]:
@@ -243,9 +254,13 @@ class Sensitivity:
 
     def _row(self, effect: Effect) -> Row:
         quantity = effect.quantity
-        unit = quantity.dimension.usual[1] if quantity.dimension.si else ""
-        factor = known_unit(unit).factor
-        row: Row = {"key": quantity.key, "value": quantity.value / factor, "unit": unit, "change": quantity.change_words}
+        factor = known_unit(quantity.unit).factor
+        row: Row = {
+            "key": quantity.key,
+            "value": quantity.value / factor,
+            "unit": quantity.unit,
+            "change": quantity.change_words,
+        }
         for one in self.outputs:
             row[f"{one.column}_per_change"] = effect.of(one.column, quantity.change)
         for one in self.outputs:
