@@ -67,7 +67,8 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     from watchsim.commands.inputs import load_scene, secured_folder
-    from watchsim.studies.improve import YIELD, arguments, improve
+    from watchsim.studies.goals import YIELD, arguments
+    from watchsim.studies.improve import improve
     from watchsim.studies.sweep import processors
     from watchsim.units import TIME
 

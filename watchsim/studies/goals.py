@@ -28,6 +28,7 @@ KNOWN = {**OUTPUTS, YIELD.name: YIELD}
 FAR = 10.0  # times the value a number without limits may become, or a tenth of it
 SIGNED = {"position", "centre_of_mass", "angle", "velocity", "rest"}  # may as well have the other sign
 PLACE = "improve"
+METHODS = ("auto", "slsqp", "nelder-mead", "differential-evolution")
 
 
 @dataclass(frozen=True)
@@ -189,6 +190,31 @@ def _number(text: str, output: Output, knobs: Sequence[Knob]) -> float:
     knob = next((one for one in knobs if one.key == output.name), None)
     value = parse(text, knob.dimension if knob else UNITS[output.unit])
     return to(value, output.unit) if output.unit else value
+
+
+def arguments(
+    scene: Scene,
+    knobs: Mapping[str, tuple[Any, Any] | None],
+    goal: str | Iterable[str],
+    keep: Iterable[str],
+    method: str,
+    starts: int,
+    points: int,
+) -> tuple[tuple[Knob, ...], tuple[Aim, ...], tuple[Aim, ...]]:
+    """What is varied, the goals, and the limits to keep; SceneError with all that is wrong with these arguments."""
+    faults: list[Fault] = []
+    varied = knobs_from(scene, knobs, faults)
+    goals = aims_from([goal] if isinstance(goal, str) else goal, varied, "--goal", faults)
+    keeps = aims_from(keep, varied, "--keep", faults)
+    for name, value, least in (("method", method, None), ("starts", starts, 1), ("points", points, 2)):
+        if (least is None and value not in METHODS) or (least is not None and not least <= int(value) <= 1000):
+            faults.append(
+                Fault(name, f"choose {', '.join(METHODS)}" if least is None else f"from {least} to 1000", f" = {value}", PLACE)
+            )
+    if any(one.output == YIELD for one in (*goals, *keeps)) and not scene.tolerances:
+        faults.append(Fault("yield", "this scene has no [tolerances], so every watch is the nominal one", place=PLACE))
+    check(varied, goals, keeps, faults)
+    return varied, goals, keeps
 
 
 def check(knobs: Sequence[Knob], goals: Sequence[Aim], keeps: Sequence[Aim], faults: list[Fault]) -> None:

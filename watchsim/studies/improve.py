@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.analysis.verdict_kinds import SPOKEN, Verdict
-from watchsim.scene.errors import Fault, SceneError
+from watchsim.scene.errors import SceneError
 from watchsim.scene.load import changed
 from watchsim.scene.roles import nominal_frequency
 from watchsim.scene.scene import Scene
@@ -35,14 +35,11 @@ from watchsim.studies.goals import (
     EQUAL,
     KNOWN,
     MOST,
-    PLACE,
     YIELD,
     Aim,
     Better,
     Knob,
-    aims_from,
-    check,
-    knobs_from,
+    arguments,
     needs,
     shown,
 )
@@ -52,7 +49,6 @@ from watchsim.studies.steady import steady
 from watchsim.studies.workers import Executor, chosen
 
 Array = NDArray[np.float64]
-METHODS = ("auto", "slsqp", "nelder-mead", "differential-evolution")
 
 SAMPLES = 256  # watches of a yield: each design takes so many limit cycles
 STEP = 5e-4  # of a range: of central differences
@@ -136,31 +132,6 @@ def improve(  # noqa: PLR0913 - options, by name
                 return whole
             search.near(first)
     return search.result("nelder-mead" if drawn and method == "auto" else method, starts, points)
-
-
-def arguments(
-    scene: Scene,
-    knobs: Mapping[str, tuple[Any, Any] | None],
-    goal: str | Iterable[str],
-    keep: Iterable[str],
-    method: str,
-    starts: int,
-    points: int,
-) -> tuple[tuple[Knob, ...], tuple[Aim, ...], tuple[Aim, ...]]:
-    """What is varied, the goals, and the limits to keep; SceneError with all that is wrong with these arguments."""
-    faults: list[Fault] = []
-    varied = knobs_from(scene, knobs, faults)
-    goals = aims_from([goal] if isinstance(goal, str) else goal, varied, "--goal", faults)
-    keeps = aims_from(keep, varied, "--keep", faults)
-    for name, value, least in (("method", method, None), ("starts", starts, 1), ("points", points, 2)):
-        if (least is None and value not in METHODS) or (least is not None and not least <= int(value) <= 1000):
-            faults.append(
-                Fault(name, f"choose {', '.join(METHODS)}" if least is None else f"from {least} to 1000", f" = {value}", PLACE)
-            )
-    if any(one.output == YIELD for one in (*goals, *keeps)) and not scene.tolerances:
-        faults.append(Fault("yield", "this scene has no [tolerances], so every watch is the nominal one", place=PLACE))
-    check(varied, goals, keeps, faults)
-    return varied, goals, keeps
 
 
 class Search:
