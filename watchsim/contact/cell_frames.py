@@ -53,9 +53,10 @@ def chords(primitives: Records, sag: float, most: int = MOST) -> Chords:
 
     No arc has more than `most`; how far its true curve then lies from them is returned.
     """
-    kind, radius = primitives.kind, primitives.radius
+    rows = np.asarray(primitives)  # columns of a plain array are found much faster
+    kind, radius = rows["kind"], rows["radius"]
     arc, line = kind == ARC, kind == LINE
-    half = np.where(primitives.extent == FULL, np.pi, np.arctan2(primitives.half_sin, primitives.half_cos))
+    half = np.where(rows["extent"] == FULL, np.pi, np.arctan2(rows["half_sin"], rows["half_cos"]))
     # Sagitta of an arc of half angle h: 2 R sin²(h/2).
     with np.errstate(divide="ignore", invalid="ignore"):
         largest = 2.0 * np.arcsin(np.sqrt(np.minimum(1.0, sag / (2.0 * radius))))
@@ -63,16 +64,16 @@ def chords(primitives: Records, sag: float, most: int = MOST) -> Chords:
     first = np.concatenate([[0], np.cumsum(pieces + 1)])
     owner = np.repeat(np.arange(len(primitives)), pieces + 1)
     share = (np.arange(len(owner)) - first[owner]) / np.maximum(pieces[owner], 1)
-    straight, way = line[owner], primitives.length[owner] * share
-    x = primitives.x[owner] + np.where(straight, way * primitives.tx[owner], 0.0)
-    y = primitives.y[owner] + np.where(straight, way * primitives.ty[owner], 0.0)
+    straight, way = line[owner], rows["length"][owner] * share
+    x = rows["x"][owner] + np.where(straight, way * rows["tx"][owner], 0.0)
+    y = rows["y"][owner] + np.where(straight, way * rows["ty"][owner], 0.0)
     if arc.any():
-        nx, ny = primitives.side * primitives.nx, primitives.side * primitives.ny
+        nx, ny = rows["side"] * rows["nx"], rows["side"] * rows["ny"]
         angle = np.arctan2(ny, nx)[owner] + half[owner] * (2.0 * share - 1.0)
         # From the middle of the arc, so that nothing is lost where the centre is far away.
         dx, dy = _swung(radius[owner], nx[owner], ny[owner], angle)
         curved = arc[owner]
-        x, y = np.where(curved, primitives.px[owner] + dx, x), np.where(curved, primitives.py[owner] + dy, y)
+        x, y = np.where(curved, rows["px"][owner] + dx, x), np.where(curved, rows["py"][owner] + dy, y)
     depth = 2.0 * radius * np.sin(0.5 * half / np.maximum(pieces, 1)) ** 2
     return Chords(np.stack([x, y], axis=1), first, np.where(arc, depth, 0.0))
 

@@ -40,13 +40,17 @@ def turn_symmetry(primitives: Records, tolerance: float) -> Symmetry:
 @functools.lru_cache(maxsize=32)
 def _symmetry_of(rows: bytes, tolerance: float) -> Symmetry:
     """Of primitives as bytes: every run of a geometry asks for the same, several times."""
-    primitives = np.frombuffer(rows, PRIMITIVE).view(np.recarray)
+    primitives = np.frombuffer(rows, PRIMITIVE)
     drawn = chords(primitives, math.inf)  # corner: its point; line or arc: its two ends
     ends = drawn.points[drawn.first[:-1]], drawn.points[drawn.first[1:] - 1]
     classes = _classes(primitives, tolerance)
     best = Symmetry(1, np.arange(len(primitives)), np.zeros(len(primitives), bool))
     gain = 0.25 * len(primitives)
     for fold in sorted({d for members, _ in classes for d in _divisors(len(members))}, reverse=True):
+        dividable = sum(len(members) for members, _ in classes if len(members) % fold == 0)
+        axial = sum(len(members) for members, on_axis in classes if on_axis)
+        if (dividable + axial) * (1.0 - 1.0 / fold) <= gain:  # at most so many share it
+            continue
         image, loose = np.arange(len(primitives)), np.zeros(len(primitives), bool)
         for members, on_axis in classes:
             if len(members) % fold == 0:
@@ -66,12 +70,19 @@ def _symmetry_of(rows: bytes, tolerance: float) -> Symmetry:
 
 def _classes(primitives: Records, tolerance: float) -> list[tuple[NDArray[np.int64], bool]]:
     """Primitives of one kind, size and distance from the origin, each class in the order of polar angles; is it on the axis?"""
-    x, y = primitives.px, primitives.py
-    away = np.where(primitives.extent > 0, np.hypot(primitives.x, primitives.y), np.hypot(x, y))
-    full = primitives.extent > 0
-    angle = np.where(full, np.arctan2(primitives.y, primitives.x), np.arctan2(y, x))
+    x, y = primitives["px"], primitives["py"]
+    away = np.where(primitives["extent"] > 0, np.hypot(primitives["x"], primitives["y"]), np.hypot(x, y))
+    full = primitives["extent"] > 0
+    angle = np.where(full, np.arctan2(primitives["y"], primitives["x"]), np.arctan2(y, x))
     label = np.zeros(len(primitives), int)
-    for value in (primitives.kind, primitives.side, primitives.extent, primitives.length, primitives.radius, away):
+    for value in (
+        primitives["kind"],
+        primitives["side"],
+        primitives["extent"],
+        primitives["length"],
+        primitives["radius"],
+        away,
+    ):
         label = _split(label, np.asarray(value, float), tolerance)
     classes = []
     for number in np.unique(label):
@@ -99,20 +110,24 @@ def _mismatch(primitives: Records, ends: tuple[Array, Array], image: NDArray[np.
     """How far each primitive, turned, may be from its image (an upper bound)."""
     c, s = math.cos(angle), math.sin(angle)
     turn = np.array([[c, s], [-s, c]])
-    apart = [np.hypot(*(points @ turn - points[image]).T) * (primitives.extent == 0) for points in ends]
-    middle = np.stack([primitives.px, primitives.py], axis=1)
-    normal = np.stack([primitives.nx, primitives.ny], axis=1)
+    apart = [np.hypot(*(points @ turn - points[image]).T) * (primitives["extent"] == 0) for points in ends]
+    middle = np.stack([primitives["px"], primitives["py"]], axis=1)
+    normal = np.stack([primitives["nx"], primitives["ny"]], axis=1)
     other = primitives[image]
     # Two arcs differ at most by their middles, their radii and their directions times the radius, both ends included.
-    swing = np.hypot(*(normal @ turn - normal[image]).T) * primitives.radius * math.pi
-    apart.append(np.hypot(*(middle @ turn - middle[image]).T) * (primitives.extent == 0))
-    centre = np.stack([primitives.x, primitives.y], axis=1)
-    apart.append(np.hypot(*(centre @ turn - centre[image]).T) * (primitives.extent > 0))
+    swing = np.hypot(*(normal @ turn - normal[image]).T) * primitives["radius"] * math.pi
+    apart.append(np.hypot(*(middle @ turn - middle[image]).T) * (primitives["extent"] == 0))
+    centre = np.stack([primitives["x"], primitives["y"]], axis=1)
+    apart.append(np.hypot(*(centre @ turn - centre[image]).T) * (primitives["extent"] > 0))
     # Of a corner, the fan of its normals as well, as a length.
-    fan = np.arctan2(primitives.half_sin, primitives.half_cos)
+    fan = np.arctan2(primitives["half_sin"], primitives["half_cos"])
     turned = np.hypot(*(normal @ turn - normal[image]).T) + np.abs(fan - fan[image])
-    apart.append(turned * primitives.length * (primitives.kind == CORNER))
-    total = np.sum(apart, axis=0) + np.where(primitives.extent > 0, 0.0, swing) + 2.0 * np.abs(primitives.radius - other.radius)
+    apart.append(turned * primitives["length"] * (primitives["kind"] == CORNER))
+    total = (
+        np.sum(apart, axis=0)
+        + np.where(primitives["extent"] > 0, 0.0, swing)
+        + 2.0 * np.abs(primitives["radius"] - other["radius"])
+    )
     return np.asarray(total)
 
 

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from watchsim.drawing.findings import Finding, Stroke, finding_at
 from watchsim.drawing.material import MARKS, last_word
 from watchsim.drawing.nodes import TIGHT, Grid, Nodes, Outline, Track, nearest_fraction, passes_through
-from watchsim.geometry.loops import Box, Floats, Ints, Loop, Table, extents, meetings, near_pairs, table_of, within
+from watchsim.geometry.loops import Box, Floats, Ints, Loop, Table, meetings, near_pairs, table_of, within
 from watchsim.geometry.primitives import Arc, Edge, Line, Point
 
 # Loose ends are paired with their nearest partner, so that each gap is named once, with both ends.
@@ -366,7 +366,7 @@ def unique_loops(outlines: Sequence[Outline]) -> tuple[list[Outline], list[Findi
     findings = []
     for outline in outlines:
         loop = outline.loop
-        box = extents([loop]) or (0.0, 0.0, 0.0, 0.0)
+        box = loop.box or (0.0, 0.0, 0.0, 0.0)
         near = (k for k in grid.around(box[:2]) if math.dist(boxes[k], box) <= 2.0 * SAME)
         if any(same_loop(kept[k].loop, loop) for k in near):
             message = f"the outline that begins with {outline.sources[0]} is drawn twice; one was left out"
@@ -491,7 +491,7 @@ def twins(loops: Sequence[Loop]) -> list[Finding]:
     """An error for each closed outline of one layer that follows another one all along within NEAR."""
     if len(loops) < 2:
         return []
-    boxes = np.array([extents([loop]) for loop in loops])
+    boxes = np.array([loop.box for loop in loops])
     order = np.argsort(boxes[:, 0], kind="stable")
     left = boxes[order, 0]
     found = []

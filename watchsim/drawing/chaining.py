@@ -27,7 +27,7 @@ from watchsim.drawing.chain_faults import (
 )
 from watchsim.drawing.findings import Finding, Stroke, finding_at
 from watchsim.drawing.nodes import TIGHT, Join, Junctions, Nodes, Outline, junctions
-from watchsim.geometry.loops import Inside, Loop, extents
+from watchsim.geometry.loops import Inside, Loop
 from watchsim.geometry.primitives import Arc, Boxes, Edge, Line, Point
 from watchsim.geometry.solids import area
 
@@ -57,7 +57,7 @@ def depths(loops: Sequence[Loop], size: NDArray[np.float64]) -> list[int] | None
     """In how many others each loop lies, by the middle of its first edge: one more than the smallest loop around it."""
     if len(loops) < 2:
         return [0] * len(loops)
-    boxes = np.array([extents([loop]) for loop in loops])
+    boxes = np.array([loop.box for loop in loops])
     probes = np.array([loop.edges[0].point(0.5) for loop in loops])
     tree = Boxes(boxes)
     depth = [0] * len(loops)

@@ -18,7 +18,7 @@ from watchsim.drawing.chain_faults import SHALLOW, Layer, all_meetings, crosses
 from watchsim.drawing.findings import Finding, finding_at
 from watchsim.drawing.material import MARKS, last_word
 from watchsim.drawing.nodes import Outline
-from watchsim.geometry.loops import Inside, Loop, extents
+from watchsim.geometry.loops import Inside, Loop
 from watchsim.geometry.primitives import Arc, Boxes, Line, Point
 from watchsim.geometry.solids import area
 
@@ -270,7 +270,7 @@ def _note_nesting(found: list[Lie], rows: Sequence[Loop]) -> None:
     """Where nothing crosses, a loop lies in a larger one if a point of it does."""
     first = len(rows) - len(found)
     sizes = [abs(area(loop)) for loop in rows]
-    boxes = Boxes(np.array([extents([loop]) for loop in rows]))
+    boxes = Boxes(np.array([loop.box for loop in rows]))
     probes = [_inner_point(loop.reversed() if loop.hole and k < first else loop) for k, loop in enumerate(rows)]
     insides: dict[int, Inside] = {}
     for small, large in zip(*(column.tolist() for column in boxes.holding(np.array(probes))), strict=True):

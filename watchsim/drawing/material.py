@@ -11,7 +11,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from watchsim.geometry.loops import Inside, Loop, extents
+from watchsim.geometry.loops import Inside, Loop
 from watchsim.geometry.primitives import Arc, Boxes, Point
 from watchsim.geometry.solids import area
 
@@ -58,7 +58,7 @@ def in_material(points: Sequence[Point], solid: Sequence[Loop]) -> list[int]:
         return []
     depths = [0] * len(points)
     insides: dict[int, Inside] = {}
-    for k, number in zip(*Boxes(np.array([extents([loop]) for loop in solid])).holding(np.array(points)), strict=True):
+    for k, number in zip(*Boxes(np.array([loop.box for loop in solid])).holding(np.array(points)), strict=True):
         if number not in insides:
             insides[number] = Inside(solid[number])
         if insides[number].winding(points[k]) != 0:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -18,7 +19,7 @@ from numpy.typing import NDArray
 from watchsim.geometry.primitives import TURN, Arc, Edge, Point, moved, reflected
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Loop:
     """An oriented chain of edges in metres, with the layer it was drawn on.
 
@@ -33,6 +34,11 @@ class Loop:
     @property
     def length(self) -> float:
         return sum(edge.length for edge in self.edges)
+
+    @cached_property
+    def box(self) -> Box | None:
+        """As `extents`, of this one."""
+        return extents([self])
 
     def reversed(self) -> Loop:
         edges = tuple(edge.reversed() for edge in reversed(self.edges))

@@ -425,10 +425,17 @@ def _against(riding: tuple[Ride, ...], bodies: Records, bound: tuple[Bond, ...])
     )
 
 
+_last_size: list[tuple[tuple[Body, ...], float]] = [((), 1e-3)]  # a scene is looked at for overlaps before it is compiled
+
+
 def scene_size(scene: Scene) -> float:
     """The largest distance of an outline from its moving body's origin, m; 1 mm where nothing moving has outlines."""
-    reaches = [_reach(body) for body in scene.bodies if body.motion != "fixed" and body.loops]
-    return max(reaches, default=0.0) or 1e-3
+    bodies, size = _last_size[0]
+    if bodies is not scene.bodies:
+        reaches = [_reach(body) for body in scene.bodies if body.motion != "fixed" and body.loops]
+        size = max(reaches, default=0.0) or 1e-3
+        _last_size[0] = scene.bodies, size
+    return size
 
 
 def _reach(body: Body) -> float:

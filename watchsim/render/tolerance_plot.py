@@ -27,6 +27,7 @@ MOST_OUTPUTS, MOST_BARS = 6, 8
 TALL, BARS_TALL, SCATTER_TALL, TITLE_TALL = 42.0, 50.0, 58.0, 12.0  # mm, of the rows of panels
 BINS = 40
 LEAST = 0.01  # of the variance: less has no bar
+MANY = 2000  # dots: as a picture, in files of vectors as well, which would be large and slow to open
 PALE = "#9fb4c4"  # good watches where failing ones matter: seen on white, and behind their colours
 
 
@@ -136,7 +137,7 @@ def _scatter(axes: Axes, study: ToleranceStudy, samples: Samples, outputs: list[
     y = samples.column(one.column)
     if len(names) > 1:
         colour, words = _values(study, samples, names[1])
-        dots = axes.scatter(x, y, c=colour, s=4.0, cmap=style.MAP, linewidths=0.0)
+        dots = axes.scatter(x, y, c=colour, s=4.0, cmap=style.MAP, linewidths=0.0, rasterized=len(x) > MANY)
         bar = axes.figure.colorbar(dots, ax=axes)
         bar.set_label(words, fontsize=style.SMALL, color=INK)
         bar.ax.tick_params(labelsize=style.SMALL, colors=INK, length=2.0, width=style.HAIR)
@@ -159,11 +160,12 @@ def _map(axes: Axes, study: ToleranceStudy, samples: Samples) -> None:
     away = np.abs(apart(samples, next(iter(study.failures)))[0])
     decides = dict.fromkeys(study.plan.space.draws[j].name for j in np.argsort(-away, kind="stable"))
     (x, across), (y, up) = (_values(study, samples, name) for name in list(decides)[:2])
-    axes.scatter(x[samples.good], y[samples.good], s=4.0, color=PALE, linewidths=0.0, label="good")
+    many = len(x) > MANY
+    axes.scatter(x[samples.good], y[samples.good], s=4.0, color=PALE, linewidths=0.0, label="good", rasterized=many)
     for i, words in enumerate(study.failures):
         mine = np.array([wrong == words for wrong in samples.wrong])
         mark, colour = style.MARKERS[i % len(style.MARKERS)], style.SERIES[(i + 1) % len(style.SERIES)]
-        axes.scatter(x[mine], y[mine], s=6.0, marker=mark, color=colour, linewidths=0.0, label=words)
+        axes.scatter(x[mine], y[mine], s=6.0, marker=mark, color=colour, linewidths=0.0, label=words, rasterized=many)
     axes.set_xlabel(across)
     axes.set_ylabel(up)
     style.ticks(axes.xaxis, 5)

@@ -194,7 +194,7 @@ def _shot(led: Led, brief: bool, state: State | None) -> Cycle:
     others = _otherwise(loop)
     if isinstance(found, Lost):
         again = _after_several(oscillate, found.amplitude, others) if found.trouble == UNSETTLED else None
-        return again or _by_run(loop, parts, NO_REPEAT, led.time + AFTERWARDS * parts.period, state)
+        return again or _by_run(loop, parts, NO_REPEAT, led.time + AFTERWARDS * parts.period, state, brief)
     exact = _closed(oscillate, found, others)
     loop.simulated += sum(other.simulated for other in others)
     if isinstance(exact, Return):
@@ -309,8 +309,11 @@ def _alone(oscillate: ReturnMap) -> Cycle:
     return Cycle(False, None, message, multipliers=(ratio,))
 
 
-def _by_run(loop: Loop, parts: Parts, why: str, duration: float | None = None, state: State | None = None) -> Cycle:
-    """What an ordinary run settles to, from the scene's start or from that state."""
+def _by_run(
+    loop: Loop, parts: Parts, why: str, duration: float | None = None, state: State | None = None, brief: bool = False
+) -> Cycle:
+    """What an ordinary run settles to, from the scene's start or from that state; `brief`: what tolerance adds to its error is
+    not looked at."""
     if duration is None:
         duration = min(max(loop.scene.duration, FEWEST * parts.period), max(LONGEST, FEWEST * parts.period))
     while True:
@@ -327,7 +330,7 @@ def _by_run(loop: Loop, parts: Parts, why: str, duration: float | None = None, s
         if settled or run.stop != Stop.DURATION or duration >= MOST * parts.period:
             break
         duration = min(LONGER * duration, MOST * parts.period)
-    if settled:
+    if settled and not brief:
         others = _otherwise(loop)
         means = less_sure(means, [late_means(run_from(other, state, duration)) for other in others])
         loop.simulated += sum(other.simulated for other in others)
