@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ from naive.level_trigger import beat_error_ms
 from render.fake_runs import watch_run
 
 import watchsim as ws
+from watchsim.analysis.sound import another_beat_error
 from watchsim.analysis.timegrapher import tape
 from watchsim.simulation.state import EVENT_DTYPE, EventKind
 from watchsim.simulation.trajectory import Trajectory
@@ -50,4 +52,10 @@ def test_the_first_noise_gives_the_true_beat_error_and_a_loud_one_another(
     assert heard.beat_error_ms == pytest.approx(true, abs=0.05)
     assert heard.amplitude_deg is not None
     assert beat_error_ms(file, 0.05, beat) == pytest.approx(true, abs=0.05)
-    assert late[0] < beat_error_ms(file, 0.3, beat) < late[1]
+    loud = beat_error_ms(file, 0.3, beat)
+    assert late[0] < loud < late[1]
+    note = another_beat_error(run, (duration - 8.0 * beat, duration))  # beside the sound of a page
+    assert (note == "") == (profile == "swiss_lever")
+    if note:
+        shown = [float(text) for text in re.findall(r"(\d+\.\d+) ms", note)]
+        assert shown[2:] == [pytest.approx(loud, abs=0.1), pytest.approx(true, abs=0.06)]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import io
+import itertools
 import json
 import zipfile
 from dataclasses import replace
@@ -17,7 +18,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.path import Path as ClosedPath
 from pages.browser import opened
 from pages.pace import played
-from render.colour_vision import lab, linear
+from render.colour_vision import TO_XYZ, lab, linear
 from scipy.ndimage import maximum_filter, minimum_filter
 from shapely.affinity import affine_transform
 from shapely.geometry import LineString, Point, Polygon
@@ -438,6 +439,91 @@ def test_a_frame_in_space_has_the_colours_of_the_palette(run: Trajectory, writte
                     )
     assert {"TEETH", "STONES", "ARMS", "RIM"} <= set(off) and sum(map(len, off.values())) > 150
     assert max(max(values) for values in off.values()) < 3.0, {layer: max(values) for layer, values in off.items()}
+
+
+def shot_of(page: Any, text: str) -> Any:
+    """A picture (rows, columns, RGB) of the data address that a script returns."""
+    return iio.imread(io.BytesIO(base64.b64decode(page.evaluate(text).split(",", 1)[1])))[..., :3].astype(int)
+
+
+SOLID = "(() => { watchsim.seek(watchsim.window[0]); return document.getElementById('solid').toDataURL(); })()"
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_light_changes_how_bright_a_tilted_face_is_and_not_its_hue(written: Path, scheme: str) -> None:
+    """Where a face is evenly lit, its colour is that of the palette at the brightness that is seen: of metal up to the
+    opening tilt nearly everywhere, of stones, which mirror light of any colour besides, less closely."""
+    off: dict[str, list[Any]] = {}
+    with opened(written, scheme=scheme) as page:
+        page.focus("#stage")
+        data = json.loads(page.text_content("#data"))
+        worn = [(one["body"], one["fill"]) for one in data["solids"]["pieces"]]
+        worn += [(one["body"], one["colours"][0]) for one in data["coils"]]
+        for tilt, yaw in itertools.product((0.3, 0.6, 0.85), (0.0, 1.6, 3.1, 4.7)):
+            page.evaluate("([tilt, yaw]) => watchsim.space(tilt, yaw)", [tilt, yaw])
+            page.wait_for_timeout(100)
+            seen, number = shot_of(page, SOLID), shot_of(page, "watchsim.numbered()")
+            body = number[..., 0] + 256 * number[..., 1] - 1
+            even = (minimum_filter(body, 7) == maximum_filter(body, 7)) & (body >= 0)
+            even &= (
+                np.ptp(np.stack([maximum_filter(seen, (5, 5, 1)), minimum_filter(seen, (5, 5, 1))]), axis=0).max(axis=2) <= 12
+            )
+            for own in np.unique(body[even]).tolist():
+                chosen = np.unique(seen[even & (body == own)], axis=0, return_counts=True)
+                for colour, count in zip(*chosen, strict=True):
+                    light = linear(f"#{bytes(colour.tolist()).hex()}")
+                    same = {
+                        fill: linear(fill) * (TO_XYZ[1] @ light) / (TO_XYZ[1] @ linear(fill)) for b, fill in worn if b == own
+                    }
+                    apart = {fill: float(np.linalg.norm(lab(light) - lab(one))) for fill, one in same.items()}
+                    nearest = min(apart, key=apart.__getitem__)
+                    off.setdefault(nearest, []).append((apart[nearest], int(count)))
+    assert {BRASS.fill, STEEL.fill, RUBY.fill, FIXED.fill} <= set(off)
+    for fill, found in off.items():
+        apart, counts = (np.array(column) for column in zip(*sorted(found), strict=True))
+        share = np.cumsum(counts) / counts.sum()
+        assert apart[np.searchsorted(share, 0.5)] < (6.0 if fill == RUBY.fill else 1.0), fill
+        assert apart[np.searchsorted(share, 0.95)] < (12.0 if fill == RUBY.fill else 3.0), fill
+
+
+WRITTEN = """(() => {
+  const said = [], write = CanvasRenderingContext2D.prototype.fillText;
+  CanvasRenderingContext2D.prototype.fillText = function (text, ...at) { said.push(text); write.call(this, text, ...at); };
+  watchsim.seek(watchsim.window[0]);
+  CanvasRenderingContext2D.prototype.fillText = write;
+  return said;
+})()"""  # the texts that the player writes for an instant
+
+
+@pytest.mark.parametrize("profile", ["swiss_lever", "graham"])
+def test_names_in_space_stand_apart_and_on_their_parts(profile: str, tmp_path: Path) -> None:
+    """A name points at its body, drawn alone; from above it points where it does in the flat picture."""
+    run = simulate(load(Path(str(profiles_dir())) / profile / "scene.toml"), duration=1.2, record="all")
+    with opened(report(run, tmp_path / "page.html")) as page:
+        page.focus("#stage")
+        page.keyboard.press("l")
+        flat = {one["text"]: one["at"] for one in page.evaluate("watchsim.names()")}
+        page.evaluate("watchsim.space(0, 0)")
+        above = {one["text"]: one["at"] for one in page.evaluate("watchsim.names()")}
+        assert all(above[text] == pytest.approx(at, abs=0.01) for text, at in flat.items())
+        for tilt, yaw in ((0.85, 0.35), (0.6, -0.8), (1.1, 0.2)):
+            page.evaluate("([tilt, yaw]) => watchsim.space(tilt, yaw)", [tilt, yaw])
+            page.wait_for_timeout(100)
+            names = page.evaluate("watchsim.names()")
+            assert len(names) >= 3
+            for i, one in enumerate(names):
+                for other in names[:i]:
+                    (a, b, c, d), (e, f, g, h) = one["box"], other["box"]
+                    assert c < e or g < a or d < f or h < b, (one["text"], other["text"])
+                    assert not crossing((one["from"], one["at"]), (other["from"], other["at"])), (one["text"], other["text"])
+                if one["body"] >= 0:
+                    alone = shot_of(page, f"watchsim.numbered({one['body']})")
+                    x, y = np.array(one["at"]) * alone.shape[1] / page.evaluate("document.getElementById('stage').clientWidth")
+                    near = alone[max(int(y) - 3, 0) : int(y) + 4, max(int(x) - 3, 0) : int(x) + 4, 0]
+                    hollow = np.allclose(next(each.point for each in part_names(run.scene) if each.text == one["text"]), 0.0)
+                    assert hollow or (near == one["body"] + 1).any(), one["text"]
+        assert set(page.evaluate(WRITTEN)) >= {one["text"] for one in names}
+        assert "above" in page.get_attribute("#stage", "class") and silent(page)
 
 
 def test_solids_are_turned_chosen_and_put_away(run: Trajectory, written: Path) -> None:

@@ -19,21 +19,25 @@ from hypothesis import strategies as st
 from render.fake_runs import disc_run, watch_run
 from scipy.interpolate import BPoly
 
+from watchsim.analysis.headlines import headlines
 from watchsim.analysis.phases import Phase
 from watchsim.analysis.summary import summary
+from watchsim.analysis.timeline import shown_beats, timeline_text
 from watchsim.cli import main
 from watchsim.drawing.read import read
-from watchsim.escapement.function_report import statics
+from watchsim.escapement.function_report import statics, text
 from watchsim.escapement.measure import measure
 from watchsim.geometry.loops import Loop, polyline
 from watchsim.geometry.primitives import Arc, Line
 from watchsim.pages.html import SCRIPTS, element, embedded, joined
 from watchsim.pages.player import TooMuch, channels, path_data, shown
-from watchsim.pages.report_page import page_text, report
+from watchsim.pages.report_page import page_parts, page_text, report
 from watchsim.pages.solids import packed_solids
-from watchsim.pages.timing_sheet import phase_tables, verdict
+from watchsim.pages.timing_sheet import phase_tables, sheet, verdict
 from watchsim.paths import profiles_dir
+from watchsim.render.part_names import part_names
 from watchsim.render.rows import kept_rows
+from watchsim.render.wear_plot import plot_wear
 from watchsim.scene.load import load
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.trajectory import Trajectory
@@ -366,3 +370,33 @@ def test_triangles_of_solids_turn_as_their_normals_so_that_backs_need_no_drawing
         facing = np.cross(b - a, c - a)
         along = np.sum(facing * normals[faces].astype(float).sum(axis=1), axis=1)
         assert np.all(along[np.linalg.norm(facing, axis=1) > 1e3] > 0.0)
+
+
+@pytest.mark.parametrize(
+    ("profile", "duration", "word", "others"),
+    [
+        ("graham", 4.0, "pallet", {"stone", "pin"}),
+        ("pin_pallet", 1.5, "pin", {"stone"}),
+        ("swiss_lever", 1.0, "stone", {"pallet"}),
+    ],
+)
+def test_pallets_have_one_word_wherever_they_are_named(profile: str, duration: float, word: str, others: set[str]) -> None:
+    """On the sheet, in noises and names, in the panels of wear, in beats and in phases."""
+    run = simulate(load(profiles_dir() / profile), duration, record="all")
+    names = {one.text for one in part_names(run.scene)}
+    events = {event.split(": ")[0] for _, event in page_parts(run)[1]["events"]}
+    panels = [axes.get_title() for axes in plot_wear(run).axes]
+    said = [
+        headlines(run, summary(run)),
+        timeline_text(run, shown_beats(run)),
+        *text(measure(run.scene)),
+        *names,
+        *events,
+        *panels,
+    ]
+    said.append(re.sub("<[^>]*>", " ", str(sheet(run, summary(run))).split("h-parameters")[0]))
+    words = set(re.findall(r"\b[a-z]+\b", " ".join(said).lower()))
+    assert word in words and not words & (others | {f"{other}s" for other in others})
+    assert {f"entry {word}", f"exit {word}"} <= names
+    assert any(f"entry {word}" in panel for panel in panels) and any(f"entry {word}" in event for event in events)
+    assert ("clock" if profile == "graham" else "watch") in (summary(run)["verdict_message"] or "clock watch")

@@ -17,7 +17,7 @@ from analysis.made_faults import swiss
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.colors import to_rgb, to_rgba
+from matplotlib.colors import to_hex, to_rgb, to_rgba
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
@@ -42,6 +42,7 @@ from watchsim.render.palette import (
     OTHERS,
     PHASE_LINES,
     RUBY,
+    SECOND,
     STEEL,
     Style,
     contrast,
@@ -339,9 +340,13 @@ def test_shades_of_phases_are_distinct_and_keep_their_hue(style: Style) -> None:
     css = (Path(ws.__file__).parent / "pages" / "assets" / "page.css").read_text()
     on_page = re.findall(r"--b(\d: #\w+);", css.split(f"--card: {PAGE[style.name]}")[1])[:5]
     assert [f"{k}: {colour}" for k, colour in enumerate(own)] == on_page
+    second = SECOND if style is LIGHT else to_hex(on_dark(SECOND, face=True))  # of a co-axial, whose beats have two impulses
     for vision, ground in itertools.product(VISIONS, (PAGE[style.name], "#ffffff" if style is LIGHT else style.background)):
-        assert least_difference((*own, ground), vision) > 8.0
-    for name, shade in style.phases.items():
+        assert least_difference((*own, second, ground), vision) > 8.0
+    chips = re.findall(r"--s[0-4]: (#\w+);", css.split(f"--card: {PAGE[style.name]}")[1])[:5]
+    again = mixed("#000000", chips[2], 0.7)  # `.s8`
+    assert all(least_difference((*chips, again, PAGE[style.name]), vision) > 8.0 for vision in VISIONS)
+    for name, shade in (*style.phases.items(), ("impulse", second)):
         (_, a, b), (_, c, d) = lab(linear(shade)), lab(linear(PHASE_LINES[name]))
         assert abs(math.remainder(math.atan2(b, a) - math.atan2(d, c), math.tau)) < 0.55, name
 

@@ -233,7 +233,7 @@ def test_what_goes_far_is_followed():
     ("place", "said"),
     [
         ("levr", "bodies with a drawing"),
-        ("entyr stone", 'did you mean "entry stone"'),
+        ("entyr pallet", 'did you mean "entry pallet"'),
         ("lever.NONE", "layers of lever"),
         ("lever.NONE.1", "layers of lever"),
         ("1,2:3", "two corners"),
@@ -270,7 +270,7 @@ def test_the_wheel_presses_on_the_stone_of_the_beat():
         x, y, angle = run.pose("lever", t)
         c, s = math.cos(angle), math.sin(angle)
         own = np.array([[c, s], [-s, c]]) @ (place - (x, y))
-        body, loop = PalletStones(run.scene).stone(f"{beat.stages[0].pallet} stone")
+        body, loop = PalletStones(run.scene).stone(beat.stages[0].pallet)
         edges = LineString(polyline(loop, 1e-8))
         assert body.name == "lever" and edges.distance(Point(own)) < 2e-8
         assert insets(run, (0.0, 0.6), [f"{beat.stages[0].pallet} stone"], [BOX], 0.0)[0].box == BOX
@@ -278,7 +278,7 @@ def test_the_wheel_presses_on_the_stone_of_the_beat():
 
 def test_no_stones_no_inset():
     run = ws.simulate(ws.load(ws.profiles_dir() / "incline"), duration=0.05)
-    with pytest.raises(ValueError, match=r'inset "exit stone" is not known.*nothing swings'):
+    with pytest.raises(ValueError, match=r'inset "exit stone": the exit pallet is not known.*nothing swings'):
         insets(run, (0.0, 0.05), ["exit stone"], [BOX], 0.0)
 
 

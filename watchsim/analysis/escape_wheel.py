@@ -10,7 +10,17 @@ from typing import Any
 import numpy as np
 
 from watchsim.analysis.timing import Beats, holding_at_end, is_recorded, nominal_period
-from watchsim.scene.roles import drive_direction, frequency, keeps_time, may_lock, only_presses, oscillators, pitch, roles
+from watchsim.scene.roles import (
+    drive_direction,
+    frequency,
+    keeps_time,
+    may_lock,
+    only_presses,
+    oscillators,
+    pitch,
+    roles,
+    timekeeper,
+)
 from watchsim.simulation.recording import FEWEST_TURNS, tail_length
 from watchsim.simulation.state import EventKind
 from watchsim.simulation.tally import sums_of
@@ -44,7 +54,8 @@ def never_touched(run: Trajectory) -> str | None:
     parts, kinds = roles(run.scene), run.sums.get("events_by_kind", {})
     if not may_lock(run.scene) or not kinds or kinds.get("impact") or kinds.get("close"):
         return None
-    return f"no amplitude and rate of a watch: {parts.wheel} never touched anything, and {parts.oscillator} swings by itself"
+    kind = timekeeper(run.scene)
+    return f"no amplitude and rate of a {kind}: {parts.wheel} never touched anything, and {parts.oscillator} swings by itself"
 
 
 def _missing(run: Trajectory, found: Beats, start: float) -> str:

@@ -38,7 +38,7 @@ from watchsim.analysis.timing import (
     is_recorded,
     with_the_last,
 )
-from watchsim.scene.roles import Roles, hinged_pallets, keeps_time, with_anchor
+from watchsim.scene.roles import Roles, hinged_pallets, keeps_time, pallet_word, with_anchor
 from watchsim.simulation.recording import Pair
 from watchsim.simulation.state import EventKind
 from watchsim.simulation.trajectory import Array, Trajectory
@@ -46,7 +46,8 @@ from watchsim.simulation.trajectory import Array, Trajectory
 # How are the phases of many beats kept: in columns, of which a row is made into words only when it is looked at.
 
 NAMES = ("unlock", "catch-up", "impulse", "drop", "run to banking", "locked", "recoil")
-FACES = ("stone", "tooth", "balance", "")  # on what the wheel pushes in an impulse; the last is for other phases
+STONE = "stone"  # of the lever; a pin or pallet is read as such
+FACES = (STONE, "tooth", "balance", "")  # on what the wheel pushes in an impulse; the last is for other phases
 NOTHING = FACES.index("")
 COLUMNS = ("beat", "name", "start", "end", "on")
 
@@ -152,7 +153,7 @@ def _face(pair: Pair, parts: Roles) -> str:
     """On what the wheel presses in a contact: a face of the lever, one of its own teeth, or the oscillator."""
     if parts.oscillator in (pair.body_a, pair.body_b):
         return "balance"
-    return "tooth" if pair.body_b == parts.wheel else "stone"  # the second of a pair holds the line or the rounder arc
+    return "tooth" if pair.body_b == parts.wheel else STONE  # the second of a pair holds the line or the rounder arc
 
 
 # Such a beat has no unlocking of its own: the tooth slides from the locking face onto the impulse face (dead-beat), or turns
@@ -424,8 +425,8 @@ AT_ONCE_PHASES = 300  # beats; their rows are some megabytes, which a processor 
 class Phase:
     """A stretch of a beat, s; angles at its start and turns during it, rad, of wheel, lever and oscillator.
 
-    `beat` counts the half swings from 1 as in beats.csv. `on` says of an impulse on what: stone, tooth or balance, or on which
-    pallet, where each is a body of its own.
+    `beat` counts the half swings from 1 as in beats.csv. `on` says of an impulse on what: stone (pallet, pin), tooth or
+    balance, or on which pallet, where each is a body of its own.
     """
 
     beat: int
@@ -514,7 +515,8 @@ def _stretches(run: Trajectory, parts: Roles, found: Beats, within: NDArray[np.b
         return gathered(_anchor_beats(run, parts, found, contacts, within), AT_ONCE_PHASES)
     whole = np.flatnonzero(within & _is_whole(run, found))
     ways = (progress(run, parts.wheel, found.tick[whole]), progress(run, parts.wheel, found.end[whole]))
-    return lever_phases(found, contacts, whole, ways, AT_ONCE_PHASES)
+    faces = tuple(pallet_word(run.scene) if face == STONE else face for face in FACES)
+    return (replace(some, words=faces) for some in lever_phases(found, contacts, whole, ways, AT_ONCE_PHASES))
 
 
 def _is_whole(run: Trajectory, found: Beats) -> NDArray[np.bool_]:

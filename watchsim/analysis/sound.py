@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 import os
 import wave
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -46,6 +46,54 @@ def blows(run: Trajectory, start: float = -math.inf, end: float = math.inf) -> t
         if not first or t - times[first[-1]] > BLOW:
             first.append(k)
     return times[first], np.add.reduceat(energies, first) if first else energies
+
+
+# Many instruments wait for a noise that is loud enough. Where the first one of a beat is soft, and the loud one follows later
+# in tick than in tock, they show another beat error than the balance has (docs/guide/coaxial.md, "To the ear").
+
+WAITED_FOR = 0.3  # of the loudest noise
+APART = 0.2e-3  # s between both beat errors that are worth a word
+FEWEST, LISTENED = 6, 10  # beats
+
+
+def another_beat_error(run: Trajectory, window: Sequence[float]) -> str:
+    """Why an instrument that waits for a loud noise shows another beat error than one that hears the first of each beat; ""
+    where it does not, and where not every beat of the window (s), or of the last ten before its end, is heard."""
+    if not keeps_time(run.scene):
+        return ""
+    found = beats(run)
+    start, end = min(window[0], window[1] - 0.5 * LISTENED * found.nominal_period), window[1]  # noises are known for longer
+    times, energies = blows(run, start, end)
+    if not len(times) or not energies.max() > 0.0:
+        return ""
+    loud = np.sqrt(np.maximum(energies, 0.0) / energies.max())
+    inside = (found.start >= start) & (found.end <= end)
+    if inside.sum() < FEWEST or not np.isfinite(found.tick[inside]).all():
+        return ""
+    waited, soft = [], []
+    for tick, over in zip(found.tick[inside].tolist(), found.end[inside].tolist(), strict=True):
+        first, last = np.searchsorted(times, (tick - BLOW, over))
+        enough = np.flatnonzero(loud[first:last] >= WAITED_FOR)
+        if not len(enough):
+            return ""
+        waited.append(float(times[first + enough[0]]))
+        soft.append(float(loud[first]))
+    own, other = (_half_difference(np.array(marks)) for marks in (found.tick[inside], waited))
+    if abs(own - other) < APART or np.mean(soft) >= WAITED_FOR:
+        return ""
+    late = sorted(1e3 * float(np.mean((np.array(waited) - found.tick[inside])[side::2])) for side in (0, 1))
+    return (
+        f"The first noise of a beat is soft, {np.mean(soft):.2f} of the loudest; the first above {WAITED_FOR:g} follows "
+        f"{late[0]:.2f} ms later in one direction of swing, {late[1]:.2f} ms in the other. An instrument that waits for a "
+        f"loud noise shows a beat error of {1e3 * other:.2f} ms, one that hears the first {1e3 * own:.2f} ms, as the balance "
+        "has it; nor does a loud noise end the lift, so that it may find no amplitude."
+    )
+
+
+def _half_difference(marks: Array) -> float:
+    """Half of what the two halves of an oscillation differ by, s."""
+    halves = np.diff(marks)
+    return 0.5 * abs(float(np.mean(halves[::2]) - np.mean(halves[1::2])))
 
 
 @dataclass

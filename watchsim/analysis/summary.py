@@ -24,7 +24,7 @@ from watchsim.results.folder import versions
 from watchsim.results.tables import plain
 from watchsim.scene.keys import ALIKE
 from watchsim.scene.read_settings import FUNCTION
-from watchsim.scene.roles import keeps_time, roles, swings
+from watchsim.scene.roles import keeps_time, roles, swings, timekeeper
 from watchsim.scene.scene import Expectation
 from watchsim.simulation import MOREAU
 from watchsim.simulation.runner import Progress
@@ -321,7 +321,8 @@ def _keeps_nothing_going(run: Trajectory, judged: str | None) -> str | None:
     """Why amplitude and rate are not those of a watch: nothing touched, or the wheel runs through; None where it may be one."""
     parts, idle = roles(run.scene), never_touched(run)
     if idle is None and judged and RUNS_THROUGH in judged:
-        return f"no amplitude and rate of a watch: nothing locks {parts.wheel}, and {parts.oscillator} swings by itself"
+        kind = timekeeper(run.scene)
+        return f"no amplitude and rate of a {kind}: nothing locks {parts.wheel}, and {parts.oscillator} swings by itself"
     return idle
 
 

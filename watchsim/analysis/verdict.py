@@ -37,7 +37,7 @@ from watchsim.analysis.verdict_kinds import (
     when,
 )
 from watchsim.analysis.watch import Arms, Face, Watch, arms, arms_at, at_lever, face, in_force, unlocked, watch_of
-from watchsim.scene.roles import keeps_time, swings
+from watchsim.scene.roles import keeps_time, swings, timekeeper
 from watchsim.simulation.knock_tally import ANGLE, CONTACT, FIRST, LAST, PLACE, TOGETHER
 from watchsim.simulation.state import EventKind
 from watchsim.simulation.tally import sums_of
@@ -427,8 +427,8 @@ def verdict(run: Trajectory, found: Beats | None = None) -> Verdict:
     if watch is None:
         return NOTHING
     judged = _judged(watch)
-    pendulum = watch.oscillator not in {spring.body for spring in run.scene.springs}
-    kind = "clock" if pendulum else "watch" if keeps_time(run.scene) else "mechanism"  # a click may pass its rest position
+    kind = timekeeper(run.scene)
+    kind = kind if kind == "clock" or keeps_time(run.scene) else "mechanism"  # a click may pass its rest position
     return replace(judged, message=judged.message and judged.message.replace("the watch", f"the {kind}"))
 
 

@@ -18,7 +18,7 @@ from watchsim.contact.gaps import poses
 from watchsim.escapement.turning import WIDTH, describe, jumps, lead_on, turn_to_touch, turns_to_touch
 from watchsim.geometry.primitives import Point
 from watchsim.mechanism.compile import Compiled
-from watchsim.scene.roles import drive_direction, partners, roles
+from watchsim.scene.roles import drive_direction, pallet_word, partners, roles
 from watchsim.scene.scene import Scene
 from watchsim.scene.trains import is_still
 from watchsim.tolerances import JOINT_RESOLUTION
@@ -36,7 +36,7 @@ class Parts:
     `lever` is the oscillator itself in an escapement whose anchor swings with it: `detached` is then False.
     `to_wheel`, `to_banking`, `to_balance` are the model's contacts of the lever; `to_roller` those of wheel and balance, where
     a lever stands between the two all the same (the direct impulse of a co-axial escapement). `guarded` says that the scene
-    declares more than one of lever and balance: besides fork and pin, a safety action.
+    declares more than one of lever and balance: besides fork and pin, a safety action. `pallet` is what pallets are called.
     """
 
     wheel: str
@@ -48,6 +48,7 @@ class Parts:
     to_balance: Integers
     to_roller: Integers
     guarded: bool
+    pallet: str
 
     @property
     def detached(self) -> bool:
@@ -74,7 +75,7 @@ def parts_of(scene: Scene, compiled: Compiled) -> Parts | str:
     declared = [one for one in scene.contacts if {side.body for side in one.sides} == {lever, found.oscillator}]
     to_wheel = _between(scene, compiled, lever, {wheel})
     roller = _between(scene, compiled, found.oscillator, {wheel}) if lever != found.oscillator else np.zeros(0, np.int64)
-    return Parts(wheel, lever, found.oscillator, way, to_wheel, banking, fork, roller, len(declared) > 1)
+    return Parts(wheel, lever, found.oscillator, way, to_wheel, banking, fork, roller, len(declared) > 1, pallet_word(scene))
 
 
 def _stands(scene: Scene, name: str, lever: str) -> bool:

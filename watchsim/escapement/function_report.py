@@ -8,6 +8,7 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 from watchsim.drawing.findings import Finding
+from watchsim.escapement.by_hand import Parts
 from watchsim.escapement.fork_and_pin import Fork, Quantity, Safety
 from watchsim.escapement.impulses import Impulse, Pallet
 from watchsim.escapement.measure import Function
@@ -57,8 +58,8 @@ def judgements(scene: Scene, function: Function) -> tuple[Judgement, ...]:
     if function.pallets is not None and function.parts is not None:
         friction, held = _friction(scene, function), held_by_pivot(scene, function)
         for name, one, pivot in zip(NAMES, function.pallets, held, strict=True):
-            found += _stone(name, one, (friction, pivot), function.parts.detached)
-        found += _drops(function.pallets)
+            found += _pallet(f"{name} {function.parts.pallet}", one, (friction, pivot), function.parts.detached)
+        found += _drops(function.pallets, function.parts.pallet)
     if function.fork is not None:
         found += _fork(scene, function.fork)
     found += _freedoms(function)
@@ -104,44 +105,42 @@ def _draw(one: Pallet) -> float:
     return min((each for each in known if not math.isnan(each)), default=math.nan)
 
 
-def _stone(name: str, one: Pallet, held: tuple[float, float], detached: bool) -> Iterator[Judgement]:
+def _pallet(name: str, one: Pallet, held: tuple[float, float], detached: bool) -> Iterator[Judgement]:
     friction, pivot = held
     hold = math.degrees(math.atan(friction) + pivot)
     draw = math.degrees(_draw(one))
     if detached and draw <= hold:
         both = f"friction {friction:g}" + (f" with that of the pivot ({math.degrees(pivot):.2f}°)" if pivot else "")
-        message = f"the draw of the {name} stone falls to {draw:.2f}°; {both} holds up to {hold:.2f}°"
-        fix = "The lever is not drawn to its bank: turn the stone to more draw."
+        message = f"the draw of the {name} falls to {draw:.2f}°; {both} holds up to {hold:.2f}°"
+        fix = "The lever is not drawn to its bank: turn its face to more draw."
         yield Judgement("draw", "warning", draw, hold, message, fix, "draw above the angle of friction", "Coulomb; " + PLAYTNER)
     lock = math.degrees(min(one.lock.value, one.lock.worst, key=lambda value: value))
     if detached and lock < LEAST_LOCK:
         what = "does not lock: the tooth drops on the impulse face" if lock <= 0.0 else f"locks by {lock:.2f}° only"
-        fix = "Draw out the stone, or bring lever and wheel together."
-        yield Judgement("lock", "warning", lock, LEAST_LOCK, f"the {name} stone {what}", fix, "lock of ¾° or more", FINE_WORK)
+        fix = "Draw out what locks, or bring lever and wheel together."
+        yield Judgement("lock", "warning", lock, LEAST_LOCK, f"the {name} {what}", fix, "lock of ¾° or more", FINE_WORK)
     if detached and (run := _least(one.run)) < LEAST_RUN:
-        message = f"the run on the {name} stone is {run:.2f}°: the lever hardly moves on after the drop"
+        message = f"the run on the {name} is {run:.2f}°: the lever hardly moves on after the drop"
         yield Judgement("run", "warning", run, LEAST_RUN, message, "Open the banking.", "some run, ¼° as a rule", PLAYTNER)
     if math.degrees(one.lock.spread) > SPREAD:
         worst = math.degrees(one.lock.worst)
-        message = (
-            f"tooth {one.lock.tooth} locks by {worst:.2f}° on the {name} stone, the mean is {math.degrees(one.lock.value):.2f}°"
-        )
+        message = f"tooth {one.lock.tooth} locks by {worst:.2f}° on the {name}, the mean is {math.degrees(one.lock.value):.2f}°"
         fix = "Look at the teeth, and at the pivot of the wheel."
         yield Judgement(
             "uneven-teeth", "warning", math.degrees(one.lock.spread), SPREAD, message, fix, "all teeth lock alike", PLAYTNER
         )
 
 
-def _drops(pallets: tuple[Pallet, Pallet]) -> Iterator[Judgement]:
+def _drops(pallets: tuple[Pallet, Pallet], word: str) -> Iterator[Judgement]:
     inside, outside = (_least(one.drop) for one in pallets)
-    for word, drop in (("inside", inside), ("outside", outside)):
+    for where, drop in (("inside", inside), ("outside", outside)):
         if drop < LEAST_DROP:
-            message = f"the {word} drop is {drop:.2f}° of the wheel: a tooth may catch"
-            fix = "Narrow the teeth or the stones."
+            message = f"the {where} drop is {drop:.2f}° of the wheel: a tooth may catch"
+            fix = f"Narrow the teeth or the {word}s."
             yield Judgement("drop", "warning", drop, LEAST_DROP, message, fix, "drop of ¾° or more", FINE_WORK)
     if abs(inside - outside) > UNEQUAL_DROP:
         message = f"the drops differ: {inside:.2f}° inside, {outside:.2f}° outside"
-        fix = "Move the stones together where the inside drop is the larger, apart where the outside drop is."
+        fix = f"Move the {word}s together where the inside drop is the larger, apart where the outside drop is."
         yield Judgement("unequal-drops", "notice", abs(inside - outside), UNEQUAL_DROP, message, fix, "equal drops", PLAYTNER)
 
 
@@ -175,18 +174,18 @@ def _fork(scene: Scene, made: Fork) -> Iterator[Judgement]:
 
 
 def _freedoms(function: Function) -> Iterator[Judgement]:
-    if function.safety is None or function.pallets is None:
+    if function.safety is None or function.pallets is None or function.parts is None:
         return
-    for k, (name, one) in enumerate(zip(NAMES, function.pallets, strict=True)):
+    for k, (name, one) in enumerate(zip(pallet_names(function.parts), function.pallets, strict=True)):
         freedom, lock = function.safety[0 if function.sides[k] > 0.0 else 1], _least(one.total_lock)
         worst, at = math.degrees(freedom.worst.value), math.degrees(freedom.worst_at)
         if worst < lock:
             continue
         where = f"with the balance at {at:.0f}°"
         if math.isinf(worst):
-            message = f"{where} nothing keeps the lever on the bank of the {name} stone: it can overbank"
+            message = f"{where} nothing keeps the lever on the bank of the {name}: it can overbank"
         else:
-            message = f"{where} the lever is free by {worst:.2f}°; the {name} stone's total lock is {lock:.2f}°"
+            message = f"{where} the lever is free by {worst:.2f}°; the {name}'s total lock is {lock:.2f}°"
         fix = "Lengthen dart or horns, or close the banking."
         rule = "all freedoms less than the total lock, so that draw brings the lever back"
         yield Judgement("freedom", "warning", worst, lock, message, fix, rule, PLAYTNER)
@@ -196,7 +195,6 @@ def _least(one: Quantity) -> float:
     return math.degrees(min(one.value, one.worst))
 
 
-STONES = ("entry", "exit")
 OF_BALANCE = ("lift_angle", "unlocking", "impulse_end", "knocking", "from_rest")
 NOTICEABLE = math.radians(1e-3)  # teeth that differ by less are alike
 WORDS = {
@@ -207,7 +205,7 @@ WORDS = {
     "draw_end": "draw at the corner",
     "recoil": "recoil of the wheel",
     "lift": "lift",
-    "lift_stone": "  on the stone",
+    "lift_stone": "  on the {pallet}",
     "lift_tooth": "  on the tooth",
     "drop": "drop of the wheel",
     "shake": "shake of the wheel",
@@ -244,12 +242,17 @@ def statics(function: Function) -> dict[str, Any]:
         "lever_travel_deg": None if function.banks is None else math.degrees(function.banks[0] - function.banks[1]),
         "missing": [{"what": what, "why": why} for what, why in function.missing],
     }
-    for k, name in enumerate(STONES):
+    for k, name in enumerate(NAMES):
         found[name] = _of_stone(function, k)
     made = function.fork
     found["pin_shake_deg"] = None if made is None else _degrees(made.pin_shake.value)
     found["pin_shake_deg_error"] = None if made is None else _degrees(made.pin_shake.error)
     return found
+
+
+def pallet_names(parts: Parts) -> tuple[str, ...]:
+    """ "entry stone", "exit stone", or pallets, or pins."""
+    return tuple(f"{name} {parts.pallet}" for name in NAMES)
 
 
 def direction(function: Function) -> str:
@@ -328,7 +331,7 @@ def text(function: Function) -> Iterator[str]:
         return
     if function.pallets is not None:
         yield f"  geometry of function: {measured(function)}"
-        yield f"      {'':24}{'entry stone':>14}{'exit stone':>14}"
+        yield f"      {'':24}" + "".join(f"{name:>14}" for name in pallet_names(function.parts))
     for table in tables(function):
         if table.title:
             yield f"    {table.title}"
@@ -356,14 +359,16 @@ def measured(function: Function) -> str:
 def tables(function: Function) -> Iterator[Table]:
     """What was measured, in words: of the stones, of an impulse between other stones, of the balance, of the safety action."""
     if function.pallets is not None:
-        named_so = WORDS if function.parts is None or function.parts.detached else ANCHOR_WORDS
-        named = ((words, [getattr(one, name) for one in function.pallets]) for name, words in named_so.items())
-        yield Table("", tuple(_row(words, pair) for words, pair in named if any(math.isfinite(one.value) for one in pair)))
+        parts = function.parts
+        named_so = WORDS if parts is None or parts.detached else ANCHOR_WORDS
+        known = ((words, [getattr(one, name) for one in function.pallets]) for name, words in named_so.items())
+        pairs = ((words, pair) for words, pair in known if any(math.isfinite(one.value) for one in pair))
+        yield Table("", tuple(_row(words.format(pallet=parts.pallet if parts else ""), pair) for words, pair in pairs))
     if function.impulses is not None:
         pushes = [one for one in (push(function, k) for k in (0, 1)) if one is not None]
         kinds = Row("impulse, once unlocked", tuple(one.kind for one in pushes))
-        pairs = ((words, [getattr(one, name) for one in pushes]) for name, words in IMPULSE_WORDS.items())
-        yield Table("", (kinds, *(_row(words, pair) for words, pair in pairs)))
+        given = ((words, [getattr(one, name) for one in pushes]) for name, words in IMPULSE_WORDS.items())
+        yield Table("", (kinds, *(_row(words, pair) for words, pair in given)))
     if function.fork is not None:
         yield from _fork_tables(function)
 
@@ -395,7 +400,7 @@ def _worst_tooth(pair: list[Quantity]) -> str:
     """Words where the teeth are not alike."""
     words = [
         f"{_degrees_words(one.worst)} at tooth {one.tooth} ({name})"
-        for name, one in zip(STONES, pair, strict=True)
+        for name, one in zip(NAMES, pair, strict=True)
         if _stands_out(one)
     ]
     return ", ".join(words)

@@ -166,11 +166,13 @@ def _unused_lift(scene: Scene) -> Iterator[Finding]:
 
 
 def _at_rest(scene: Scene) -> Iterator[Finding]:
-    """A clock that hangs still at the start may never begin to tick."""
+    """A clock that hangs still at the start may never begin to tick; a body that its own drive pulls along does not hang."""
     found = oscillators(scene)
     if not found or not keeps_time(scene):
         return
     one, body = found[0], scene.body(found[0].body)
+    if any(torque.body == body.name for torque in scene.torques):
+        return
     start = body.angle if body.motion == "pivot" else 0.0
     if abs(start - one.rest) <= HANGS_STILL and all(abs(speed) <= HANGS_STILL for speed in body.velocity):
         message = f"{body.name} starts at rest in its rest position: it swings only if the drive sets it going"

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from watchsim.analysis.forces import Forces, forces, just_before
 from watchsim.analysis.phases import Phase
-from watchsim.analysis.sound import blows
+from watchsim.analysis.sound import another_beat_error, blows
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc
 from watchsim.pages.solids import packed_solids
@@ -338,14 +338,16 @@ def _one(met: Met, event: Any, names: list[str]) -> str:
 
 
 def heard(run: Trajectory, window: Window) -> dict[str, str]:
-    """Noises of the window: t (s) and loudness, 1 for the loudest; energies (J) go with the square of it."""
+    """Noises of the window: t (s) and loudness, 1 for the loudest; energies (J) go with the square of it. `note`: what an
+    instrument makes of them, where it is not what the balance does."""
     times, energies = blows(run, *window)
     energies = np.maximum(energies, 0.0)
     loudest = float(energies.max(initial=0.0))
     if loudest <= 0.0:
         return {"t": doubles([]), "loud": floats([])}
     audible = energies >= FAINT * loudest
-    return {"t": doubles(times[audible]), "loud": floats(np.sqrt(energies[audible] / loudest))}
+    loud = floats(np.sqrt(energies[audible] / loudest))
+    return {"t": doubles(times[audible]), "loud": loud, "note": another_beat_error(run, window)}
 
 
 def named(found: list[Phase], window: Window) -> list[list[Any]]:

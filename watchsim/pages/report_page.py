@@ -128,7 +128,7 @@ def _lead(run: Trajectory, span: Window) -> str:
     start, end = span
     whole = f"{run.simulated:.6g} s simulated"
     spans = recorded(run)
-    if start <= spans[0][0] and end >= run.simulated * (1.0 - 1e-9) and len(spans) == 1:
+    if start <= spans[0][0] <= 0.0 and end >= run.simulated * (1.0 - 1e-9) and len(spans) == 1:
         return f"{whole}, all of it shown"
     return f"{whole}; shown: {start:.6g} s to {end:.6g} s"
 

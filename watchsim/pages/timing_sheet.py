@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from array import array
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -13,7 +14,7 @@ from watchsim.analysis.flows import energy_shares
 from watchsim.analysis.headlines import AVERAGED, expected_text, headlines, readings
 from watchsim.analysis.phases import Phase, each_phase
 from watchsim.analysis.timing import Beats, beats
-from watchsim.escapement.function_report import Table, measured, tables
+from watchsim.escapement.function_report import Table, measured, pallet_names, tables
 from watchsim.escapement.measure import measure
 from watchsim.pages.charts import Dots, bars, scatter, strip
 from watchsim.pages.html import Content, Markup, element, joined, section, table
@@ -29,15 +30,15 @@ from watchsim.units import decimals_for, metric, signed, true_minus
 def function_tables(scene: Scene) -> Iterator[Markup]:
     """The section, measured by turning the parts of the scene by hand as `check` does; nothing of a scene without stones."""
     found = measure(scene)
-    if found.pallets is None:
+    if found.pallets is None or found.parts is None:
         return
     note = f"Measured on the drawing: {measured(found)}."
     missing = [element("p", f"Not measured: {what}, {why}.", class_="note") for what, why in found.missing]
-    measures = element("div", *map(_table, tables(found)), class_="columns")
+    measures = element("div", *(_table(one, pallet_names(found.parts)) for one in tables(found)), class_="columns")
     yield section("function", "Geometry of function", element("p", note, class_="note"), measures, *missing)
 
 
-def _table(one: Table) -> Markup:
+def _table(one: Table, pallets: tuple[str, ...]) -> Markup:
     worst = any(row.worst for row in one.rows)
     rows: list[list[Content]] = []
     for row in one.rows:
@@ -45,8 +46,8 @@ def _table(one: Table) -> Markup:
         name = element("span", words, class_="of") if row.words != words else words
         values = ["–" if value == "-" else value.replace("-", "−") for value in (*row.values, "", "")[:2]]
         rows.append([name, *values, *([row.worst] if worst else [])])
-    head = ("quantity", "entry stone", "exit stone", *(["worst tooth"] if worst else []))
-    return table(head, rows, (one.title or "stones and wheel").capitalize())
+    head = ("quantity", *pallets, *(["worst tooth"] if worst else []))
+    return table(head, rows, (one.title or f"{pallets[0].split()[1]}s and wheel").capitalize())
 
 
 LONG = 6  # entries of a list that are written out
@@ -71,6 +72,11 @@ def _rows(path: str, value: Any) -> Iterator[tuple[str, str]]:
             yield from _rows(f"{path}.{number}", item)
     else:
         yield path, _as_text(value)
+
+
+def _short(value: str) -> str:
+    """Numbers worked out by a program have sixteen digits, of which a reader needs seven."""
+    return re.sub(r"\d+\.\d{7,}", lambda found: f"{float(found[0]):.7g}", value)
 
 
 def _as_text(value: Any) -> str:
@@ -323,6 +329,7 @@ def _parameters(run: Trajectory) -> Iterator[Markup]:
         rows.append(("run.duration", f"{run.simulated:.9g} s simulated; {run.scene.duration:.9g} s in the scene"))
     if rows:
         listed = (
-            element("div", element("dt", in_words(key), title=key), element("dd", true_minus(value))) for key, value in rows
+            element("div", element("dt", in_words(key), title=key), element("dd", true_minus(_short(value)), title=value))
+            for key, value in rows
         )
         yield section("parameters", "Parameters", element("dl", *listed))

@@ -22,7 +22,7 @@ from matplotlib.text import Annotation, Text
 
 from watchsim.escapement.by_hand import Hands
 from watchsim.escapement.fork_and_pin import Passage
-from watchsim.escapement.function_report import direction, text
+from watchsim.escapement.function_report import direction, pallet_names, text
 from watchsim.escapement.impulses import DIRECT, Impulse
 from watchsim.escapement.measure import Function
 from watchsim.geometry.primitives import Point
@@ -81,7 +81,6 @@ def _beside(axes: Axes, place: Point, words: str, aside: tuple[float, float], co
 
 
 LEVER_INK, WHEEL_INK, DRAW_INK = "#1f4e9c", "#8a5a00", "#b0183c"
-STONES = ("entry", "exit")
 WHOLE = 0.06  # of the extent: margin
 DEPTHS = 3.6  # a close-up reaches so many total locks to each side
 
@@ -107,6 +106,11 @@ class Views:
     def pivot(self, name: str) -> Point:
         x, y = self.hands.pivot(name, np.array(self.hands.compiled.q))
         return 1e3 * x, 1e3 * y
+
+    def pallet(self, k: int) -> str:
+        parts = self.function.parts
+        assert parts is not None
+        return pallet_names(parts)[k]
 
     @property
     def names(self) -> tuple[str, str, str]:
@@ -164,7 +168,7 @@ def locked(axes: Axes, aspect: float, views: Views, k: int) -> None:
     mark(axes, pivot, far, (at, dropped_at), words[0], LEVER_INK, -20.0 * across)
     mark(axes, pivot, far, (dropped_at, corner), words[1], LEVER_INK, 24.0 * across)
     draw_mark(axes, toe, pivot, met.normal, numbers.draw.value, half)
-    _title(axes, f"{STONES[k]} stone, lever on its bank")
+    _title(axes, f"{views.pallet(k)}, lever on its bank")
 
 
 def _is_stone(views: Views, contact: int, lever: str) -> bool:
@@ -234,7 +238,7 @@ def dropped(axes: Axes, aspect: float, views: Views, k: int) -> None:
     aside = (34.0 * (centre[0] - place[0]) / away, 34.0 * (centre[1] - place[1]) / away)
     pointed(axes, place, f"{word} drop {degrees(numbers.drop.value)}", aside, WHEEL_INK)
     through = "" if passage.caught is None else f"{'direct' if passage.direct else 'indirect'} impulse, after the "
-    _title(axes, f"let off by the {through}{STONES[k]} stone")
+    _title(axes, f"let off by the {through}{views.pallet(k)}")
 
 
 def lift(axes: Axes, aspect: float, views: Views) -> None:
@@ -287,7 +291,7 @@ def whole(axes: Axes, aspect: float, views: Views) -> None:
     assert function.parts is not None
     reach = 0.55 * math.dist((1e3 * start.x, 1e3 * start.y), wheel)
     arc(axes, wheel, reach, (-2.1, -2.1 + 1.1 * function.parts.way) if function.parts.way > 0 else (-1.0, -2.1), WHEEL_INK)
-    _title(axes, f"{STONES[0]} stone locked")
+    _title(axes, f"{views.pallet(0)} locked")
 
 
 def shape(views: Views) -> float:

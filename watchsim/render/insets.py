@@ -21,14 +21,14 @@ from matplotlib.transforms import Affine2D, IdentityTransform
 
 from watchsim.analysis.phases import Phase
 from watchsim.geometry.loops import Loop
-from watchsim.render.marks import STONES, PalletStones, clock, spaced
+from watchsim.render.marks import SIDES, PalletStones, clock, spaced
 from watchsim.render.palette import Style, looks
 from watchsim.render.parts import LastingPatch, Part, loops_of, outline, parts, pose_matrix
 from watchsim.render.patches import CoilPatches
 from watchsim.render.view import COARSE, Frame, Pixels, View, Window, choose, dense, fitted, placed, seen, swept
 from watchsim.render.words import Words
 from watchsim.scene.keys import closest
-from watchsim.scene.roles import roles
+from watchsim.scene.roles import PALLETS, pallet_word, roles
 from watchsim.scene.scene import Body, Scene
 from watchsim.simulation.trajectory import Array, Trajectory
 
@@ -122,17 +122,18 @@ def _rectangle_of(place: str) -> Array | None:
 
 
 def _outlines(run: Trajectory, place: str, stones: PalletStones) -> tuple[Body, Sequence[Loop]]:
-    place = place.replace(" pallet", " stone") if place.endswith(" pallet") else place
-    if place in STONES and all(body.name != place for body in run.scene.bodies):
+    side, _, kind = place.partition(" ")
+    if side in SIDES and kind in PALLETS and all(body.name != place for body in run.scene.bodies):
         try:
-            lever, loop = stones.stone(place)
+            lever, loop = stones.stone(side)
         except ValueError as error:
-            raise ValueError(f"inset {error}") from None
+            raise ValueError(f'inset "{place}": {error}') from None
         return lever, [loop]
     name, _, rest = place.partition(".")
     drawn = {body.name: body for body in run.scene.bodies if loops_of(body)}
     if name not in drawn:
-        near = f'; did you mean "{meant}"?' if (meant := closest(place, [*drawn, *STONES])) else ""
+        pallets = (f"{side} {pallet_word(run.scene)}" for side in SIDES)
+        near = f'; did you mean "{meant}"?' if (meant := closest(place, [*drawn, *pallets])) else ""
         raise ValueError(f'inset "{place}": bodies with a drawing are {", ".join(drawn)}{near}')
     body = drawn[name]
     loops = loops_of(body)

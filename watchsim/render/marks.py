@@ -21,6 +21,7 @@ from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.model import LINE, Records
 from watchsim.render.parts import loops_of, outline
 from watchsim.render.view import Window, nearest
+from watchsim.scene.roles import pallet_word
 from watchsim.scene.scene import Body, Scene
 from watchsim.simulation.state import EventKind
 from watchsim.simulation.trajectory import Array, Trajectory, frames
@@ -194,7 +195,7 @@ def _world(frame: Sequence[float] | Array, x: float, y: float) -> Point:
 # The stone that a tooth meets first on its way is the entry stone, whatever layers are called and in whatever order they were
 # drawn.
 
-STONES = ("entry stone", "exit stone")
+SIDES = ("entry", "exit")
 FINE = 1e-6  # of the scene's size: how closely an outline is followed to find which one a tooth rests on
 
 
@@ -204,9 +205,9 @@ class PalletStones:
     def __init__(self, scene: Scene) -> None:
         self._scene = scene
 
-    def stone(self, name: str) -> tuple[Body, Loop]:
-        """The lever and the outline of its "entry stone" or "exit stone". ValueError where there is no such stone."""
-        compiled, lever, there = self._rest(name)
+    def stone(self, side: str) -> tuple[Body, Loop]:
+        """The lever and the outline of its stone (or pin, or pallet) of that side. ValueError where there is none."""
+        compiled, lever, there = self._rest(side)
         place = np.array(there)
 
         def distance(loop: Loop) -> float:
@@ -214,16 +215,16 @@ class PalletStones:
 
         return lever, min(loops_of(lever), key=distance)
 
-    def place(self, name: str) -> Point:
+    def place(self, side: str) -> Point:
         """Where that stone holds the wheel, in the lever's frame (m). ValueError as in `stone`."""
-        return self._rest(name)[2]
+        return self._rest(side)[2]
 
-    def _rest(self, name: str) -> tuple[Compiled, Body, Point]:
+    def _rest(self, side: str) -> tuple[Compiled, Body, Point]:
         scene, (compiled, found) = self._scene, self._measured
         if found.parts is None or found.passages is None:
             what, why = found.missing[-1]
-            raise ValueError(f'"{name}" is not known: {what} not measured, {why}')
-        rest = found.passages[STONES.index(name)].start
+            raise ValueError(f"the {side} {pallet_word(scene)} is not known: {what} not measured, {why}")
+        rest = found.passages[SIDES.index(side)].start
         lever = scene.body(found.parts.lever)
         q = np.array(compiled.q)
         q[compiled.slices[lever.name].start] = rest.lever

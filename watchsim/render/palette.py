@@ -35,7 +35,7 @@ PHASES = {  # of a beat; pale, to lie behind curves, and distinct for every kind
     "run to banking": "#eebf99",
     "recoil": "#a6cee4",  # of an anchor's wheel, where a lever unlocks
 }
-SECOND, ELSE = "#66c5ab", "#eeeeee"  # an impulse that follows another; any other phase
+SECOND, ELSE = "#6ab9a8", "#eeeeee"  # an impulse that follows another; any other phase
 ENERGIES = {  # where energy goes, on plots and pages: Okabe and Ito's colours
     "stored": "#0072b2",
     "damping": "#d55e00",
@@ -274,7 +274,7 @@ _KNOWN = {
     for own, other in (
         ("white", DARK.background),
         ("black", DARK.ink),
-        (SECOND, "#23704a"),
+        (SECOND, "#276347"),
         *((getattr(LIGHT, name), getattr(DARK, name)) for name in ("background", "ink", "faint", "grid", "contact", "force")),
         *((LIGHT.phases[name], DARK.phases[name]) for name in LIGHT.phases),
     )

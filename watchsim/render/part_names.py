@@ -17,18 +17,26 @@ from scipy.optimize import linear_sum_assignment
 
 from watchsim.analysis.timeline import pallet_side
 from watchsim.geometry.loops import Loop
-from watchsim.geometry.primitives import Arc, Point
+from watchsim.geometry.primitives import Point
 from watchsim.mechanism.compile import compile_scene
-from watchsim.render.marks import STONES, PalletStones, spaced
+from watchsim.render.marks import SIDES, PalletStones, spaced
 from watchsim.render.palette import Style
 from watchsim.render.parts import LastingPatch, loops_of, pose_matrix
 from watchsim.render.view import Frame, Pixels, hairsprings, seen
 from watchsim.render.words import Words
-from watchsim.scene.roles import Roles, corners_of, drive_direction, layer_of, middle_of, touching, with_anchor
+from watchsim.scene.roles import (
+    ALONE,
+    Roles,
+    corners_of,
+    drive_direction,
+    layer_of,
+    middle_of,
+    pallet_word,
+    touching,
+    with_anchor,
+)
 from watchsim.scene.scene import Scene
 from watchsim.simulation.trajectory import Array, Trajectory, frames
-
-ALONE = 0.5  # of all the lever's outlines by length: a shorter one is a stone of its own, a longer one carries its pallets
 
 
 @dataclass(frozen=True)
@@ -74,7 +82,7 @@ def part_names(scene: Scene) -> list[PartName]:
 
 def _pallets(scene: Scene, found: Roles) -> Iterator[PartName]:
     stones = PalletStones(scene)
-    for name in STONES:
+    for name in SIDES:
         try:
             lever, loop = stones.stone(name)
             place = stones.place(name)
@@ -82,14 +90,7 @@ def _pallets(scene: Scene, found: Roles) -> Iterator[PartName]:
             yield from _by_sides(scene, found)
             return
         alone = loop.length < ALONE * sum(one.length for one in loops_of(lever))
-        kind = (
-            "pin"
-            if isinstance(loop.edges[0], Arc) and loop.edges[0].is_circle
-            else "stone"
-            if alone and found.lever != found.oscillator
-            else "pallet"
-        )
-        yield PartName(name.replace("stone", kind), lever.name, middle_of([loop]) if alone else place)
+        yield PartName(f"{name} {pallet_word(scene)}", lever.name, middle_of([loop]) if alone else place)
 
 
 def _by_sides(scene: Scene, found: Roles) -> Iterator[PartName]:
@@ -101,7 +102,7 @@ def _by_sides(scene: Scene, found: Roles) -> Iterator[PartName]:
         other = next((name for name in sides if found.wheel in sides and name != found.wheel), None)
         if other is not None and found.lever in (other, scene.body(other).on):
             places += [(other, middle_of([loop])) for loop in layer_of(scene.body(other), sides[other])]
-    if len(places) != len(STONES):
+    if len(places) != len(SIDES):
         return
     compiled = compile_scene(scene)
     poses = frames(scene, compiled.slices, compiled.relative(compiled.q[None]))
@@ -110,9 +111,8 @@ def _by_sides(scene: Scene, found: Roles) -> Iterator[PartName]:
     line = 0.5 * (at[0] + at[1]) - wheel
     turn = line[0] * (at[0] - wheel)[1] - line[1] * (at[0] - wheel)[0]
     order = places if drive_direction(scene, found.wheel) * turn < 0.0 else places[::-1]
-    kind = "stone" if found.lever != found.oscillator else "pallet"
-    for name, (body, place) in zip(STONES, order, strict=True):
-        yield PartName(name.replace("stone", kind), body, place)
+    for name, (body, place) in zip(SIDES, order, strict=True):
+        yield PartName(f"{name} {pallet_word(scene)}", body, place)
 
 
 def _touching(scene: Scene, found: Roles) -> Iterator[PartName]:
@@ -125,7 +125,7 @@ def _touching(scene: Scene, found: Roles) -> Iterator[PartName]:
             yield PartName("horn", body, _tip(loops))
         elif text == "guard pin":
             yield PartName(text, body, _tip(loops))
-        elif body != found.lever:
+        elif body != found.lever and text != "passing spring":  # which has its name at its tip
             yield PartName(text, body, _edge(loops) if text == "safety roller" else middle_of(loops))
 
 
@@ -135,8 +135,7 @@ class Met:
     def __init__(self, run: Trajectory) -> None:
         self._run, self._parts, self._compiled = run, with_anchor(run.scene), compile_scene(run.scene)
         self._names = {(body, layer): text for body, layer, text in touching(run.scene, self._parts)}
-        kinds = [one.text.split()[1] for one in part_names(run.scene) if one.text.startswith("entry ")]
-        self._kind, self._order = (kinds or ["stone"])[0], [body.name for body in run.scene.bodies]
+        self._kind, self._order = pallet_word(run.scene), [body.name for body in run.scene.bodies]
         self._known: dict[int, str] = {}
 
     def words(self, contact: int, time: float) -> str:

@@ -77,9 +77,8 @@ def names_in(beats: Iterable[Sequence[Phase]], left_out: Sequence[str] = ("locke
 
 
 def beat_name(beat: Beat) -> str:
-    """Its number and the stone that acts in it."""
-    stone = beat.stages[0].pallet
-    return f"beat {beat.stages[0].beat}{f', {stone} stone' if stone else ''}"
+    """Its number and what is unlocked in it."""
+    return f"beat {beat.stages[0].beat}{f', {beat.pallet}' if beat.pallet else ''}"
 
 
 def shade(axes: Axes, phases: Iterable[Phase], zero: float = 0.0, factor: float = 1e3, grey: bool = False) -> None:
@@ -220,8 +219,8 @@ def _column(
             shade(axes, (stage.phase for stage in one.stages), zero, grey=beat is None)
     for axes in panels[:-1]:
         axes.set_xticklabels([])
-    stone = f", {beat.stages[0].pallet} stone" if beat is not None and beat.stages[0].pallet else ""
-    words = f"ms after t = {zero:.4f} s" if beat is None else f"ms from {beat.first.removeprefix('beginning of the ')}{stone}"
+    pallet = f", {beat.pallet}" if beat is not None and beat.pallet else ""
+    words = f"ms after t = {zero:.4f} s" if beat is None else f"ms from {beat.first.removeprefix('beginning of the ')}{pallet}"
     panels[-1].set_xlabel(words, fontsize=style.SMALL, labelpad=1.5)
     if beat is not None:
         name_above(panels[0], beat.stages, zero)

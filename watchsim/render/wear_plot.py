@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from typing import Any
 
@@ -24,7 +25,7 @@ from watchsim.units import metric
 
 Array = NDArray[np.float64]
 MOST, WIDE = 6, 42.0  # panels; mm, of one with its caption
-STONE = " stone"  # its faces share a panel
+FACE = re.compile(" (corner|locking face|impulse face)$")  # those of a stone or pallet share a panel
 TALL, FOOT = 0.95, 31.0  # of a panel's width; mm, of title, names and scale
 DECADES = 1e3  # below the most: less counts as least
 THICK, POINTS = 3.2, 26.0  # pt, and pt² of a corner
@@ -70,7 +71,7 @@ def _groups(found: Wear) -> dict[str, list[int]]:
     """Name of a panel -> primitives: a stone with all its faces, one tooth of all; those that wear most."""
     sums: dict[tuple[str, str], list[int]] = {}
     for side, (body, place) in found.where.items():
-        sums.setdefault((body, place.partition(STONE)[0] + STONE if STONE in place else place), []).append(side)
+        sums.setdefault((body, FACE.sub("", place)), []).append(side)
     index = {key: sum(float(found.along[side].sum()) for side in sides) for key, sides in sums.items()}
     teeth = [key for key in index if key[1].startswith(TOOTH)]
     left_out = set(teeth) - {max(teeth, key=index.__getitem__)} if teeth else set()

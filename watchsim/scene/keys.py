@@ -537,7 +537,7 @@ def in_words(key: str) -> str:
             said.append(PLACES[int(part)])
         elif said:
             said[-1] = f"{said[-1].removesuffix('s')} {int(part) + 1}"
-    return " ".join(said)
+    return " ".join(said) if said != ["of"] else "design"
 
 
 def dotted(words: Iterable[str]) -> str:

@@ -102,7 +102,7 @@ def _heights(scene: Scene, flat: Sequence[Slab]) -> list[float]:
     groups = _joined(_groups(scene, flat), flat, regions)
     levels: list[list[int]] = []
     level_of: dict[int, int] = {}
-    for group in sorted(groups, key=lambda members: -sum(regions[i].area for i in members)):
+    for group in sorted(groups, key=lambda members: -max(regions[i].area for i in members)):
         free = (k for k, level in enumerate(levels) if not _any_covers(group, level, regions))
         k = next(free, len(levels))
         if k == len(levels):

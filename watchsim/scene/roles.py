@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from watchsim.geometry.loops import Loop
-from watchsim.geometry.primitives import Point
+from watchsim.geometry.primitives import Arc, Point
 from watchsim.geometry.solids import mass_properties
 from watchsim.scene.forces import Side, Spring
 from watchsim.scene.scene import Body, Scene
@@ -330,6 +330,33 @@ def drive_direction(scene: Scene, name: str) -> float:
             mean = sum(value for _, value in torque.table) / len(torque.table) if torque.table else torque.value
             total += ratios[torque.body] * mean
     return -1.0 if total < 0.0 else 1.0
+
+
+def timekeeper(scene: Scene) -> str:
+    """A "watch" has a spring on its oscillator, a "clock" a pendulum."""
+    own = roles(scene).oscillator
+    return "watch" if own is None or any(spring.body == own for spring in scene.springs) else "clock"
+
+
+# What are the pallets of a mechanism called? By one word in names, sounds, plots, tables and messages.
+
+ALONE = 0.5  # of all the lever's outlines by length: a shorter one is a stone of its own, a longer one carries its pallets
+
+
+PALLETS = ("stone", "pallet", "pin")
+
+
+def pallet_word(scene: Scene) -> str:
+    """ "pin" where what locks the wheel is round, "stone" where it is an outline of its own on a lever, else "pallet"."""
+    found = with_anchor(scene)
+    if found.wheel is None or found.lever is None or found.lever == found.oscillator:
+        return "pallet"
+    lever, sides = scene.body(found.lever), [{side.body: side.layer for side in contact.sides} for contact in scene.contacts]
+    met = [loop for one in sides if {found.wheel, lever.name} == set(one) for loop in layer_of(lever, one[lever.name])]
+    if met and all(isinstance(loop.edges[0], Arc) and loop.edges[0].is_circle for loop in met):
+        return "pin"
+    whole = sum(loop.length for loop in (*lever.loops, *lever.decoration))
+    return "stone" if min((loop.length for loop in met), default=0.0) < ALONE * whole else "pallet"
 
 
 # With what do lever, oscillator and banking touch each other? Names of layers are as free as those of bodies.

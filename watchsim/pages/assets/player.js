@@ -75,8 +75,13 @@ class Player {
     const poses = this.motion.poses(this.t);
     this.view.aim(poses);
     const own = { ...look, faded: this.faded, chosen: this.chosen };
-    if (this.solids.on) { this.solids.draw(this.view, poses, own, moving); return; }
+    ctx.canvas.classList.toggle("above", this.solids.on && this.names.on);
     this.view.plain(ctx);
+    if (this.solids.on) {
+      this.solids.draw(this.view, poses, own, moving);
+      if (this.names.on) { ctx.clearRect(0, 0, this.view.width, this.view.height); this.names.draw(ctx, this.solids.sight(this.view), poses, own, this.playing); }
+      return;
+    }
     ctx.fillStyle = look.paper;
     ctx.fillRect(0, 0, this.view.width, this.view.height);
     this.scenery.draw(ctx, this.view, poses, own);
@@ -110,9 +115,12 @@ class Player {
   ruler(ctx, look) {
     const { view } = this, length = roundDown((0.16 * view.width) / view.scale), wide = length * view.scale, x = view.width - 150 - wide, y = view.height - 18;
     view.plain(ctx);
-    ctx.strokeStyle = look.ink; ctx.lineWidth = 1.5;
-    ctx.beginPath(); ctx.moveTo(x, y - 4); ctx.lineTo(x, y); ctx.lineTo(x + wide, y); ctx.lineTo(x + wide, y - 4); ctx.stroke();
-    ctx.font = `12.5px ${look.font}`; ctx.textAlign = "center"; ctx.textBaseline = "alphabetic"; ctx.fillStyle = look.ink;
+    ctx.font = `12.5px ${look.font}`; ctx.textAlign = "center"; ctx.textBaseline = "alphabetic"; ctx.fillStyle = look.ink; ctx.lineJoin = "round";
+    ctx.beginPath(); ctx.moveTo(x, y - 4); ctx.lineTo(x, y); ctx.lineTo(x + wide, y); ctx.lineTo(x + wide, y - 4);
+    for (const [colour, line] of [[look.paper, 5], [look.ink, 1.5]]) { // it may lie on a part
+      ctx.strokeStyle = colour; ctx.lineWidth = line; ctx.stroke();
+      if (line > 2) ctx.strokeText(metricLength(length), x + wide / 2, y - 6);
+    }
     ctx.fillText(metricLength(length), x + wide / 2, y - 6);
   }
 }

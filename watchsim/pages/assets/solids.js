@@ -30,6 +30,7 @@ void main() {
   float soft = mix(0.5, 1.0, smoothstep(-0.3, 0.75, n.z + 0.25 * dot(n.xy, vec2(-0.6, 0.8))));
   vec3 clear = light * soft + 0.5 * max(mirrored - 1.0, 0.0) + 0.4 * grazing;
   vec3 sent = mix(mix(clear, metallic, metal), mark, mark.x < 0.0 ? 0.0 : 0.5);
+  sent /= max(1.0, max(sent.r, max(sent.g, sent.b))); // what is too bright for a screen keeps its hue
   // sRGB, IEC 61966-2-1; roots in place of its power, 2.4, within 0.01 of 255, for processors that draw without a graphics card.
   vec3 root = sqrt(max(sent, 1e-5)), fourth = sqrt(root), high = 0.65398581 * root + 0.68871364 * fourth - 0.3184755 * sqrt(fourth) - 0.02018856 * sent - 0.00406679;
   colour = vec4(clamp(mix(12.92 * sent, high, step(0.0031308, sent)), 0.0, 1.0), 1.0) * alpha;
@@ -66,13 +67,50 @@ class Pace {
 class Solids {
   constructor(data, canvas) {
     this.solids = data.solids; this.coils = data.coils.map((one) => new Coil(one));
-    this.canvas = canvas; this.on = false; this.gl = null; this.pace = new Pace();
+    this.canvas = canvas; this.on = false; this.gl = null; this.pace = new Pace(); this.rises = new Map();
     this.level();
   }
 
   get any() { return Boolean(this.solids); }
   level() { this.tilt = TILT; this.yaw = 0.35; }
   orbit(dx, dy) { this.yaw += 0.01 * dx; this.tilt = clamp(this.tilt + 0.01 * dy, 0, STEEPEST_TILT); }
+
+  // About the upright axis, then back from above; column by column.
+  camera(view) {
+    const c = Math.cos(view.turn + this.yaw), s = Math.sin(view.turn + this.yaw), ct = Math.cos(this.tilt), st = Math.sin(this.tilt);
+    return [c, ct * s, -st * s, -s, ct * c, -st * c, 0, st, ct];
+  }
+
+  // Where names find places in space: on the upper face of their part.
+  sight(view) {
+    const m = this.camera(view), { width, height } = view, [x0, y0] = view.centre;
+    return {
+      width, height, corner: null, plain: (ctx) => view.plain(ctx),
+      point: (poses, b, x, y) => [...view.point(poses, b, x, y), this.rise(b, x, y)],
+      screen: (x, y, z = this.solids.top) => [0.5 * width + view.scale * (m[0] * (x - x0) + m[3] * (y - y0)), 0.5 * height - view.scale * (m[1] * (x - x0) + m[4] * (y - y0) + m[7] * z)],
+    };
+  }
+
+  // The height of the highest triangle of body b over a point of its frame; beside its face that of the nearest corner.
+  rise(b, x, y) {
+    const key = `${b} ${x} ${y}`, known = this.rises.get(key);
+    if (known !== undefined) return known;
+    let over = -Infinity, near = Infinity, beside = 0;
+    for (const { body, points, faces, scale } of this.pieces) {
+      if (body !== b) continue;
+      const px = (x / scale) * 32767, py = (y / scale) * 32767, side = (i, j) => (points[3 * j] - points[3 * i]) * (py - points[3 * i + 1]) - (points[3 * j + 1] - points[3 * i + 1]) * (px - points[3 * i]);
+      for (let i = 0; i < points.length; i += 3) {
+        const apart = Math.hypot(points[i] - px, points[i + 1] - py) * scale, high = (points[i + 2] * scale) / 32767;
+        if (apart < near || (apart === near && high > beside)) { near = apart; beside = high; }
+      }
+      for (let k = 0; k < faces.length; k += 3) {
+        const [i, j, l] = faces.subarray(k, k + 3), low = Math.min(points[3 * i + 2], points[3 * j + 2], points[3 * l + 2]);
+        if (side(i, j) >= 0 && side(j, l) >= 0 && side(l, i) >= 0) over = Math.max(over, (low * scale) / 32767);
+      }
+    }
+    this.rises.set(key, Number.isFinite(over) ? over : beside);
+    return this.rises.get(key);
+  }
 
   // Show or hide; false where the browser has no WebGL 2.
   turn(on) {
@@ -97,7 +135,7 @@ class Solids {
     this.gl = gl;
     this.pieces = this.solids.pieces.map((piece) => {
       const faces = bytesOf(piece.faces), points = new Int16Array(bytesOf(piece.points).buffer), shape = this.shape(points, new Int8Array(bytesOf(piece.normals).buffer), gl.SHORT, gl.BYTE, faces);
-      return { ...shape, body: piece.body, scale: piece.scale, top: piece.scale * points.reduce((top, at, k) => (k % 3 === 2 && at > top ? at : top), -32767), closed: true, light: linear(piece.fill), metal: piece.metal ? 1 : 0, kind: piece.wide ? gl.UNSIGNED_INT : gl.UNSIGNED_SHORT, count: faces.length / (piece.wide ? 4 : 2) };
+      return { ...shape, points, faces: new (piece.wide ? Uint32Array : Uint16Array)(faces.buffer), body: piece.body, scale: piece.scale, top: piece.scale * points.reduce((top, at, k) => (k % 3 === 2 && at > top ? at : top), -32767), closed: true, light: linear(piece.fill), metal: piece.metal ? 1 : 0, kind: piece.wide ? gl.UNSIGNED_INT : gl.UNSIGNED_SHORT, count: faces.length / (piece.wide ? 4 : 2) };
     }).sort((one, other) => other.top - one.top); // what lies on top hides the rest before that is lit
     return true;
   }
@@ -153,9 +191,7 @@ class Solids {
     gl.viewport(0, 0, width, height);
     gl.clearColor(...paper, 1); gl.depthMask(true); gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
-    // About the upright axis, then back from above; column by column.
-    const c = Math.cos(view.turn + this.yaw), s = Math.sin(view.turn + this.yaw), ct = Math.cos(this.tilt), st = Math.sin(this.tilt);
-    gl.uniformMatrix3fv(at.camera, false, [c, ct * s, -st * s, -s, ct * c, -st * c, 0, st, ct]);
+    gl.uniformMatrix3fv(at.camera, false, this.camera(view));
     gl.uniform3f(at.sight, ...view.centre, view.scale);
     gl.uniform2f(at.half_size, 0.5 * view.width, 0.5 * view.height);
     gl.uniform1f(at.depth, 4 * Math.max(view.width, view.height) * Math.max(view.zoom, 1));

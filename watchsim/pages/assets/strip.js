@@ -14,6 +14,7 @@ class Strip {
     name.textContent = "Sound (relative)"; head.append(name, this.read); this.box.append(head, this.canvas);
     this.canvas.className = "strip"; this.canvas.setAttribute("role", "img"); this.canvas.setAttribute("aria-label", "Noises over time");
     this.canvas.addEventListener("pointerdown", (event) => { const box = this.canvas.getBoundingClientRect(); seek(this.range[0] + clamp((event.clientX - box.left - AXIS) / (box.width - AXIS - SIDES[1]), 0, 1) * (this.range[1] - this.range[0])); });
+    if (data.sound.note) { const note = document.createElement("p"); note.className = "note"; note.textContent = data.sound.note; this.box.append(note); }
     host.after(this.box);
     this.box.hidden = !sound.t.length;
   }
@@ -37,7 +38,7 @@ class Strip {
     if (!width || this.box.hidden) return;
     if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) { canvas.width = Math.round(width * ratio); canvas.height = Math.round(height * ratio); }
     const [from, to] = range, left = AXIS, wide = width - AXIS - SIDES[1], x = (time) => left + ((time - from) / (to - from)) * wide, step = (to - from) / wide;
-    const top = 15 * NAMES + 4, middle = 0.5 * (top + height - 4), half = 0.5 * (height - 4 - top), waves = step < 5e-5;
+    const top = to - from < NAMED ? 15 * NAMES + 4 : 4, middle = 0.5 * (top + height - 4), half = 0.5 * (height - 4 - top), waves = step < 5e-5;
     ctx.setTransform(ratio, 0, 0, ratio, 0, 0);
     ctx.clearRect(0, 0, width, height);
     for (const [name, first, last] of this.phases) {

@@ -19,7 +19,7 @@ class View {
     Object.assign(this, { width, height, ratio, band });
     if (this.data.follow) { this.base = Math.min(height, width * 0.5625) / this.data.follow.sight; return; }
     const { boxes } = this.data, room = boxes.map((box) => box.slice(1)), shown = this.opens ? this.data.close : room;
-    const k = boxes.length > 1 && this.fits(shown[1]) > QUARTER_GAIN * this.fits(shown[0]) ? 1 : 0;
+    const k = this.turned(shown);
     this.turn = boxes[k][0]; this.room = room[k];
     this.base = this.fits(this.room);
     this.home = this.middle(this.room);
@@ -35,10 +35,15 @@ class View {
 
   get aside() { return 14 + WHOLE * this.width; }
 
+  // Which of the boxes of a picture as it is and of one turned by a quarter is worth showing?
+  turned(boxes) { return boxes.length > 1 && this.fits(boxes[1]) > QUARTER_GAIN * this.fits(boxes[0]) ? 1 : 0; }
+
   // Is what touches so small that the page opens with it, and with the whole beside it?
   get opens() {
     const { close, closer, boxes } = this.data;
-    return Boolean(close) && Math.max(...close.map((box) => this.fits(box, this.aside))) > closer * Math.max(...boxes.map((box) => this.fits(box.slice(1))));
+    if (!close) return false;
+    const k = this.turned(close), whole = boxes.map((box) => this.fits(box.slice(1)));
+    return this.fits(close[k], this.aside) > closer * Math.max(whole[k], whole[this.turned(boxes.map((box) => box.slice(1)))]);
   }
 
   // What touches, beside the whole; everything where that is hardly smaller.
