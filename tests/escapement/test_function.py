@@ -245,7 +245,7 @@ def test_a_lever_that_is_held_too_close_lets_off_nothing():
     bodies = tuple(replace(body, **changes.get(body.name, {})) for body in scene.bodies)
     function = measure(replace(scene, bodies=bodies))
     assert function.pallets is None
-    assert "before the tooth is let off" in function.missing[0][1]
+    assert "before a tooth is let off" in function.missing[0][1]
 
 
 # Is the geometry of function of an anchor that swings with its pendulum the one it was constructed with?

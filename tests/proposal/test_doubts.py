@@ -143,6 +143,12 @@ def star_points(teeth: int, k: int) -> list[tuple[float, float]]:
     return [(6.0, math.tau * k / teeth), (3.6, math.tau * (k + 0.5) / teeth)]
 
 
+@pytest.mark.parametrize("layers", ["body", "own"])
+def test_pallets_hinged_on_a_pendulum_are_not_found_and_said_so(layers: str, tmp_path: Path) -> None:
+    found = propose([assembly(scene_of("grasshopper"), tmp_path / "a.dxf", layers)])
+    assert any("2 pivots are drawn at (0.04542, 39.95) mm" in words for words in found.doubts)
+
+
 def test_two_levers_are_doubted(tmp_path: Path) -> None:
     """One more arm beside a Swiss lever."""
     path = assembly(scene_of("swiss_lever"), tmp_path / "lever.dxf", "body")
@@ -169,7 +175,10 @@ def test_a_click_that_can_swing_through_the_teeth_is_doubted(longer: float, swin
         ("coaxial", ()),
         ("duplex", ()),
         ("snail", ()),
-        ("verge", ("foliot is all that moves, and nothing meets it",)),
+        (
+            "verge",
+            ("foliot is all that moves, and nothing meets it", "far_side_FAR and near_side_NEAR: teeth in a straight row"),
+        ),
         ("detent", ()),
         ("pin_wheel", ()),
         ("cam", ()),
@@ -222,6 +231,19 @@ def test_a_graham_drawn_by_hand_ticks_as_proposed(tmp_path: Path, capsys: pytest
     assert json.loads(capsys.readouterr().out)["doubts"] == []
     assert main(["steady", str(tmp_path / "out"), "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["amplitude_deg"] == pytest.approx(4.0, abs=0.5)
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_a_finger_turns_the_way_in_which_it_carries_the_star_on(mirrored: bool, tmp_path: Path) -> None:
+    path = assembly(scene_of("jumper"), tmp_path / "a.dxf", "whole")
+    document = ezdxf.readfile(path)
+    if mirrored:
+        for entity in document.modelspace():
+            entity.transform(ezdxf.math.Matrix44.scale(-1.0, 1.0, 1.0))
+        document.saveas(path)
+    found = tried([path])
+    assert found.doubts == ()
+    assert f'velocity = "{"" if mirrored else "-"}60 rpm"' in found.files["scene.toml"].decode()
 
 
 def test_of_a_part_left_out_it_is_said_that_it_may_be_what_should_touch(tmp_path: Path) -> None:

@@ -79,7 +79,8 @@ def _passage(wheel: Wheel, sweep: Sweep, side: float, tooth: int) -> Passage:
     # The one by which the wheel drops to the lock; before it, it may have run after an impulse stone.
     let_offs = sweep.let_offs
     if not let_offs:
-        raise NotMeasured("the lever reaches its other bank before the tooth is let off")
+        ends = "the lever reaches its other bank" if wheel.parts.detached else f"the examined swing of {wheel.parts.lever} ends"
+        raise NotMeasured(f"{ends} before a tooth is let off")
     if any(one.landed is None for one in let_offs):
         raise NotMeasured("a tooth that is let off finds no stone to lock on: the wheel runs free")
     landed = let_offs[-1].landed

@@ -9,16 +9,22 @@ import itertools
 import math
 from collections.abc import Iterator, Sequence
 
+import numpy as np
+
+from watchsim.geometry.primitives import Point
 from watchsim.proposal.facing import Facing
 from watchsim.proposal.parts import nose_of, toothing
-from watchsim.proposal.pieces import CLICK, DRIVER, LEVER, NONE, OSCILLATOR, WHEEL
+from watchsim.proposal.pieces import CLICK, DRIVER, LEVER, NONE, OSCILLATOR, SAME, WHEEL, Piece
 from watchsim.proposal.roles import Role, first_of
 
 
-def doubts(roles: Sequence[Role], facings: Sequence[Facing], apart: bool, leans: bool, left_out: bool) -> list[str]:
+def doubts(
+    roles: Sequence[Role], facings: Sequence[Facing], apart: bool, leans: bool, left_out: bool, pivots: Sequence[Point] = ()
+) -> list[str]:
     """Sentences, the gravest first.
 
-    `apart`: parts were put side by side; `leans`: teeth show which way the wheel turns; `left_out`: outlines with faults were.
+    `apart`: parts were put side by side; `leans`: teeth show which way the wheel turns; `left_out`: outlines with faults were;
+    `pivots` (m): the points on layers for pivots.
     """
     moving = [role for role in roles if role.moves]
     met = {role.name for facing in facings for role, _ in facing.sides}
@@ -31,6 +37,7 @@ def doubts(roles: Sequence[Role], facings: Sequence[Facing], apart: bool, leans:
     elif not found and moving and not facings and len(roles) > 1:
         found.append(f"{moving[0].name} is all that moves, and nothing meets it: no pivot was found for the other parts")
     found += _centres(moving)
+    found += list(_racks(roles)) or (_hinges(moving, pivots) if found else ())
     wheel = first_of(roles, WHEEL)
     stopped = any(role.task in (LEVER, OSCILLATOR, CLICK) for role in roles)
     if wheel is not None and not leans and stopped and not any(role.task == DRIVER for role in roles):
@@ -106,7 +113,8 @@ def _clicks(moving: Sequence[Role]) -> Iterator[str]:
         if least > teeth.inner:
             yield (
                 f"{role.name} can swing through the teeth of {wheel.name}: its nose comes no nearer to the centre than "
-                f"{1e3 * least:.3g} mm, and the teeth go down to {1e3 * teeth.inner:.3g} mm. Move its pivot, or make it longer"
+                f"{1e3 * least:.3g} mm, and the teeth go down to {1e3 * teeth.inner:.3g} mm. Move its pivot, make it "
+                "longer, or give its spring a stop, as of a click that recoils"
             )
 
 
@@ -133,6 +141,53 @@ def _heights(moving: Sequence[Role], facings: Sequence[Facing]) -> Iterator[str]
                 f"{one.name} and {other.name} lie over each other, and a flat drawing does not show which of their surfaces "
                 f"are at one height; {taken}. Give surfaces that touch layers of their own, such as TEETH, STONES, FORK and PIN"
             )
+
+
+STRAIGHT = 5.0  # times as long as wide
+ROW, EVEN = 8, 0.02  # teeth of a rack, at least; of the pitch: what their distances scatter by
+
+
+def _racks(roles: Sequence[Role]) -> Iterator[str]:
+    """Rows of teeth along a line, such as a crown wheel seen from the side: nothing here turns so."""
+    racks = [piece.layer for role in roles for piece in role.part.pieces if _is_rack(piece)]
+    if racks:
+        yield (
+            f"{' and '.join(dict.fromkeys(racks))}: teeth in a straight row, as of a rack or a crown wheel seen from the side. "
+            'Only wheels of teeth about a centre are proposed; give it a body with motion = "slide", bound to the wheel by '
+            "[[gears]], as in the scene of watchsim new verge"
+        )
+
+
+def _is_rack(piece: Piece) -> bool:
+    points = piece.points - piece.points.mean(axis=0)
+    _, sizes, axes = np.linalg.svd(points, full_matrices=False)
+    along, across = (points @ axes.T).T
+    if sizes[0] < STRAIGHT * sizes[1] or np.ptp(along) < STRAIGHT * np.ptp(across):
+        return False
+    middle = 0.5 * (across.max() + across.min())
+    for level in (0.5 * (middle + across.max()), 0.5 * (middle + across.min())):
+        ups = np.flatnonzero((across[:-1] < level) & (across[1:] >= level))
+        pitches = np.diff(along[ups])
+        if len(ups) >= ROW and np.ptp(np.abs(pitches)) < EVEN * np.abs(pitches).mean():
+            return True
+    return False
+
+
+def _hinges(moving: Sequence[Role], pivots: Sequence[Point]) -> Iterator[str]:
+    """More pivots at one place than parts that turn about it."""
+    places: list[Point] = []
+    for at in pivots:
+        here = sum(math.dist(at, other) <= SAME for other in pivots)
+        turning = [role.name for role in moving if role.part.centre and math.dist(role.part.centre.at, at) <= SAME]
+        if here <= max(1, len(turning)) or any(math.dist(at, place) <= SAME for place in places):
+            continue
+        places.append(at)
+        about = f"only {' and '.join(turning)} turns" if turning else "no part turns"
+        yield (
+            f"{here} pivots are drawn at ({1e3 * at[0]:.4g}, {1e3 * at[1]:.4g}) mm, and {about} about that place as proposed: "
+            "parts hinged at one place, as the pallets of a grasshopper are on its pendulum, are not distinguished. Write a "
+            "body for each, with on = NAME where another one carries it"
+        )
 
 
 def _centres(moving: Sequence[Role]) -> Iterator[str]:

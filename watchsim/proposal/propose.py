@@ -18,7 +18,7 @@ from watchsim.mechanism.overlap import overlaps
 from watchsim.proposal.doubts import doubts
 from watchsim.proposal.facing import Facing, facings, named_facings
 from watchsim.proposal.parts import parts_of
-from watchsim.proposal.pieces import CLICK, OSCILLATOR, WHEEL, Piece, Source, is_mark, pieces_of, read_source, size_of
+from watchsim.proposal.pieces import CLICK, DRIVER, OSCILLATOR, WHEEL, Piece, Source, is_mark, pieces_of, read_source, size_of
 from watchsim.proposal.roles import Role, apart, first_of, lean_of, roles_of
 from watchsim.proposal.start import PIVOT, Amounts, Drawn, Start, amounts_of, drawn, side_by_side, start_of
 from watchsim.scene.errors import SceneError
@@ -267,10 +267,11 @@ class Proposal:
     doubts: tuple[str, ...] = ()
     meets: bool = True  # off where no two parts of the drawings can meet, so that there is nothing to try
     either_way: bool = False  # nothing in the drawing says which way its wheel turns
+    way: int = -1  # in which it is driven, +1 counter-clockwise
 
 
 def propose(paths: Sequence[Path], way: int = 0) -> Proposal:
-    """A scene from drawings of parts, or of a whole assembly; `way` (±1) is how the wheel turns where its teeth do not say it.
+    """A scene from drawings of parts, or of a whole assembly; `way` (±1) is how the wheel turns, whatever its teeth say.
 
     NothingToPropose where there is no closed outline, or where outlines have faults that no scene takes.
     """
@@ -291,8 +292,9 @@ def propose(paths: Sequence[Path], way: int = 0) -> Proposal:
     copies = drawn(sources, roles)
     plan = Plan(title, sources, copies, roles, met, unlikely, start, amounts, places, lean or -1, why, left_out)
     mended = [words for source in sources for words in source.mended]
+    pivots = [mark.at for source in sources for mark in source.marks if mark.point and is_mark(mark.layer)]
     while True:
-        plan.doubts = [*doubts(roles, plan.facings, bool(places), bool(lean), bool(left_out)), *mended]
+        plan.doubts = [*doubts(roles, plan.facings, bool(places), bool(lean), bool(left_out), pivots), *mended]
         files = {drawing.name: drawing.data for drawing in plan.drawn}
         files[SCENE] = scene_text(plan).encode()
         wrong = _overlapping(files)
@@ -303,8 +305,10 @@ def propose(paths: Sequence[Path], way: int = 0) -> Proposal:
         plan = replace(plan, facings=kept, others=[*plan.others, *gone], guesses=[])
     meets = any(not facing.by_name_alone for facing in plan.facings)
     sides = tuple((plan.side(*facing.sides[0]), plan.side(*facing.sides[1])) for facing in plan.facings)
-    either = not way and why == UNKNOWN_WAY and first_of(roles, OSCILLATOR) is not None
-    return Proposal(files, tuple(plan.guesses), tuple(roles), sides, tuple(left_out), tuple(plan.doubts), meets, either)
+    either = not way and why == UNKNOWN_WAY and any(role.task in (OSCILLATOR, DRIVER) for role in roles)
+    return Proposal(
+        files, tuple(plan.guesses), tuple(roles), sides, tuple(left_out), tuple(plan.doubts), meets, either, plan.direction
+    )
 
 
 def _pieces(sources: Sequence[Source]) -> tuple[list[Piece], list[str]]:
@@ -345,9 +349,12 @@ UNKNOWN_WAY = "clockwise: the drawing does not say which way it is driven"
 def _direction(wheel: Role | None, tasks: set[str], tried: int) -> tuple[int, str]:
     """Which way the wheel is driven, 0 where the drawing does not say, and why: a click lets it turn against its teeth."""
     lean = lean_of(wheel.part) if wheel is not None else 0
-    if not lean:
+    if tried:
         words = "clockwise" if tried < 0 else "counter-clockwise"
-        return tried, f"{words}: the drawing does not say; tried both ways, it works this way only" if tried else UNKNOWN_WAY
+        says = "the tips of the teeth lean the other way, but" if lean else "the drawing does not say;"
+        return tried, f"{words}: {says} tried both ways, it works this way only"
+    if not lean:
+        return 0, UNKNOWN_WAY
     held = CLICK in tasks and OSCILLATOR not in tasks
     way = "clockwise" if (lean < 0) != held else "counter-clockwise"
     if held:

@@ -13,9 +13,10 @@ import numpy as np
 
 from watchsim.analysis.summary import summary
 from watchsim.analysis.verdict import verdict
+from watchsim.proposal.pieces import OSCILLATOR
 from watchsim.proposal.propose import Proposal, propose
 from watchsim.scene.load import load
-from watchsim.scene.roles import swings
+from watchsim.scene.roles import pitch, swings
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.trajectory import Trajectory
 
@@ -27,17 +28,20 @@ STILL = 1e-6  # rad or m: what moves less in all that time does not move
 def tried(paths: Sequence[Path]) -> Proposal:
     """What drawings suggest, with what a run of it shows among the doubts.
 
-    Where nothing says which way the wheel turns, it is the way in which it works. NothingToPropose as for `propose`.
+    The wheel turns the way in which it works where nothing says which way it turns, or where it does not work the way that its
+    teeth lean, as those of a cylinder escapement, whose tips trail. NothingToPropose as for `propose`.
     """
     found = propose(paths)
     if not found.meets:
         return found
-    if found.either_way:
-        ways = [(one, *_run(one.files)) for one in (propose(paths, way) for way in (-1, 1))]
-        works = [one for one, wrong, drives in ways if drives and not wrong]
-        if len(works) == 1:
-            return works[0]
-    return replace(found, doubts=(*found.doubts, *_run(found.files)[0]))
+    wrong, drives = _run(found.files)
+    works = drives and not wrong
+    if found.either_way or (not works and any(role.task == OSCILLATOR for role in found.roles)):
+        other = propose(paths, -found.way)
+        wrong_there, drives_there = _run(other.files)
+        if works != (drives_there and not wrong_there):
+            return other if not works else propose(paths, found.way)
+    return replace(found, doubts=(*found.doubts, *wrong))
 
 
 class _TakesLong(Exception):
@@ -46,7 +50,7 @@ class _TakesLong(Exception):
 
 def _run(files: Mapping[str, bytes]) -> tuple[list[str], bool]:
     """Sentences on what does not work in the first seconds of the scene among those files, none where all does, and whether the
-    wheel drives the oscillator: it may tick and take from the swing all the same."""
+    wheel drives the oscillator, which it may not do though it ticks, or is driven on by a tooth."""
     began = time.monotonic()
 
     def progress(_now: float, _end: float) -> None:
@@ -64,7 +68,17 @@ def _run(files: Mapping[str, bytes]) -> tuple[list[str], bool]:
         except _TakesLong:
             return [f"a trial of {SECONDS:g} s takes long and was broken off: whether it works is not known"], False
     numbers = summary(run)
-    return list(_wrong(run, numbers)), (numbers["efficiency"] or 0.0) > 0.0
+    return list(_wrong(run, numbers)), (numbers["efficiency"] or 0.0) > 0.0 or _fall_back(run) == []
+
+
+def _fall_back(run: Trajectory) -> list[str] | None:
+    """The toothed bodies that a driven one carries on by no tooth, since they fall back; None without such bodies."""
+    pivoted = [body for body in run.scene.bodies if body.motion in ("pivot", "driven") and body.geared is None]
+    toothed = [(body.name, pitch(run.scene, body.name)) for body in pivoted if body.prescribed is None]
+    found = [(name, one) for name, one in toothed if one]
+    if not found or len(toothed) == len(pivoted):
+        return None
+    return [name for name, one in found if np.ptp(run.q[[0, -1], run.slices[name].start]) < 0.9 * one]
 
 
 def _wrong(run: Trajectory, found: Mapping[str, Any]) -> Iterator[str]:
@@ -79,6 +93,8 @@ def _wrong(run: Trajectory, found: Mapping[str, Any]) -> Iterator[str]:
         return
     if (share := found["efficiency"]) is not None and share < 0.0:
         yield f"{tried} the wheel drives nothing: it takes more from the swing than it gives. Try more torque"
+    if back := _fall_back(run):
+        yield f"{tried} {' and '.join(back)} is moved, and falls back each time: nothing carries it on by a tooth"
     still = [
         body.name for body in run.scene.bodies if body.name in run.slices and np.ptp(run.q[:, run.slices[body.name]]) < STILL
     ]
