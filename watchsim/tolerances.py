@@ -76,7 +76,7 @@ ACCELERATION_ROUNDING = 1e-11
 # detachment where a spring passes its rest; small: rounding of the place decides there.
 SPRING_AT_REST = 1e-3
 # Of G_N: a sliding contact pushed less open by its force is jammed. Large: jams early; small: huge forces.
-PAINLEVE = 1e-7
+PAINLEVE = 1e-5
 # Of that: where a step ends. Near 1: rounding may then find the contact not yet jammed; small: huger forces.
 PAINLEVE_WATCHED = 0.9
 # Of the fastest slip: one that slow has no direction. Large: mirror images differ; small: rounding takes sides.

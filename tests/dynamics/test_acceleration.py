@@ -11,7 +11,7 @@ from plain_kernels import in_python
 from sparse_contacts import Sparse
 
 from watchsim.contact.gaps import BACKWARD, FORWARD, OPEN, STICK, closed_contacts, contact_kinematics, place, poses
-from watchsim.dynamics import acceleration, delassus
+from watchsim.dynamics import acceleration, delassus, friction
 from watchsim.dynamics import forces as bearing_friction
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Line
@@ -370,3 +370,24 @@ def test_moving_bearings_drag_and_take_power() -> None:
     in_python(bearing_friction.add_drag)(dry, grips, h)
     assert h == pytest.approx(3.0 - moving * dry)
     assert in_python(bearing_friction.drag_power)(dry, grips, u) == pytest.approx(moving * dry @ u)
+
+
+# What does friction leave of how forces part bodies?
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_the_share_that_friction_leaves_is_a_ratio_of_determinants(seed: int) -> None:
+    """For one contact by itself that is 1 - mu G_c / G_N; where friction makes the system singular it vanishes."""
+    random, m = np.random.default_rng(seed), 3
+    ways = random.normal(size=(2 * m, 2 * m + 2))
+    G = ways @ ways.T
+    along = np.where(np.arange(m) == 1, 0.0, random.uniform(-0.8, 0.8, m))
+    rows = np.array([0, 2, 3, 4])  # the middle one sticks
+    bent = G - np.zeros_like(G)
+    bent[:, 0::2] -= along * G[:, 1::2]
+    share, room = callable_kernel(friction.share_left), np.zeros((8, 8))
+    expected = np.linalg.det(bent[np.ix_(rows, rows)]) / np.linalg.det(G[np.ix_(rows, rows)])
+    assert share(G, along, rows, 4, room) == pytest.approx(expected, rel=1e-9)
+    assert share(G, along, rows[:1], 1, room) == pytest.approx(1.0 - along[0] * G[0, 1] / G[0, 0], rel=1e-12)
+    singular = np.array([G[0, 0] / G[0, 1], 0.0, 0.0])
+    assert abs(share(G, singular, rows[:1], 1, room)) < 1e-14

@@ -17,18 +17,14 @@ from watchsim.simulation.simulate import simulate
 from watchsim.simulation.state import Stop
 
 
-@pytest.mark.parametrize(("seed", "number"), [(23, 416), (23, 433), (23, 472), (23, 489), (29, 428)])
+@pytest.mark.parametrize(
+    ("seed", "number"), [(23, 416), (23, 433), (23, 472), (23, 489), (29, 428), (29, 81), (29, 891), (37, 805)]
+)
 def test_what_the_hunt_found(seed: int, number: int) -> None:
     """416: dry friction held the shaft of a loose body in flight, and drove it. 433 to 489: contacts and a bearing at the limit
     of its friction hold the same body, and their loads were shared anew without end. 428: friction that falls with speed led a
-    contact towards Painlevé's paradox, and steps became too small before it counted as jammed."""
+    contact towards Painlevé's paradox, and steps became too small before it counted as jammed. 81, 891, 805: a shaft in its
+    hole and what its body slides along jam together, though neither does alone."""
     run = simulate(oiled(mechanism(seed, number), Dice(seed + 1000, number)), tolerance=1e-9)
     assert run.stop == Stop.DURATION
     assert missed(run) < 1e-9
-
-
-def test_a_run_that_comes_near_the_paradox_says_so() -> None:
-    run = simulate(oiled(mechanism(29, 81), Dice(1029, 81)), tolerance=1e-9)
-    assert run.stop == Stop.STEP_TOO_SMALL
-    assert "bar accelerates at 8.3e+06 m/s² while friction acts at arm.circle" in run.stop_message
-    assert "less friction there helps" in run.stop_message

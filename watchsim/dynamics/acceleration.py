@@ -22,12 +22,13 @@ from watchsim.dynamics.friction import (
     load_bearings,
     press_unloaded,
     read_forces,
+    share_left,
     solve_contacts,
 )
 from watchsim.dynamics.lcp import Level, Solver
 from watchsim.dynamics.redundant import smallest_forces, solve_small, unit_scale
 from watchsim.jit import hot_kernel, kernel
-from watchsim.tolerances import ACCELERATION_ROUNDING, NO_ARM, RANK
+from watchsim.tolerances import ACCELERATION_ROUNDING, NO_ARM, PAINLEVE, RANK
 
 
 @kernel
@@ -149,7 +150,7 @@ def decide_modes(model, closed, m, bearings, speed_zero, system, problem, out_gr
         system.size[row] = abs(system.b[row])
     if problem.last.coupled:
         trace_loads(model, closed, m, rows, 1.0, system, problem)
-    problem.begun[:m] = STICK
+    problem.begun[:m], problem.last.together = STICK, 0
     elements, begins = -1, True
     while begins:
         elements = _solve(model, closed, m, bearings, speed_zero, system, problem)
@@ -164,6 +165,9 @@ def decide_modes(model, closed, m, bearings, speed_zero, system, problem, out_gr
     for i in range(m):
         if out_mode[closed.ids[i]] == OPEN:
             system.force[2 * i], system.force[2 * i + 1] = 0.0, 0.0
+    if m > 1 and _slide_into_jam(closed, m, out_mode, system, problem):
+        problem.last.together = 1
+        return False
     _decide_grips(m, bearings, problem, system, out_grip)
     return True
 
@@ -243,6 +247,22 @@ def _has_no_arm(G, i):
 @kernel
 def _slides_into_jam(system, m, i, problem):
     return problem.element[i] < 0 and jams(system.G, problem.drag[i], m, i)
+
+
+@kernel
+def _slide_into_jam(closed, m, mode, system, problem):
+    """The same for contacts that hand forces on to each other, one of which slid already."""
+    n, slides = 0, False
+    for i in range(m):
+        problem.along[i] = 0.0
+        if problem.x[i] > 0.0 and mode[closed.ids[i]] != OPEN:
+            problem.pressed[n], n = 2 * i, n + 1
+            if mode[closed.ids[i]] == STICK and problem.drag[i] != 0.0:
+                problem.pressed[n], n = 2 * i + 1, n + 1
+            elif mode[closed.ids[i]] != STICK:
+                problem.along[i] = abs(problem.drag[i]) * mode[closed.ids[i]]
+                slides = slides or (problem.element[i] < 0 and problem.drag[i] != 0.0)
+    return slides and share_left(system.G, problem.along, problem.pressed, n, problem.B) <= PAINLEVE
 
 
 @kernel

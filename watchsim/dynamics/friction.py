@@ -97,6 +97,7 @@ class LastProblem:
     jammed: int  # 1: of the bearings no friction goes with the load that it makes
     coupled: int  # 1: loads of bearings are solved with it, see coupled_loads.py
     sliders: int  # bearings that move, in a coupled problem: behind those that may hold
+    together: int  # 1: contacts that hand forces on to each other slide into a jam
     seized: int  # 1: a bearing has jammed, and the impulses that stop it are to be found
 
 
@@ -129,6 +130,8 @@ class FrictionProblem(NamedTuple):
     solvers: Integers  # problems solved since last counted, by `Solver`; the last one counts those without a solution
     sizes: Integers  # the same problems by their number of unknowns, see `LARGEST`
     bearing: Integers  # (n,) coordinate of each bearing that might hold
+    pressed: Integers  # (rows of G,) those with a force within the law: the unknowns of the decided modes
+    along: Array  # (room,) friction per normal force of each contact that slides, against its slip; 0 where it sticks
     drag: Array  # (room,) friction per normal force at the lower end of the interval
     element: Integers  # (room,) of each contact, -1: none
     begun: Integers  # (room,) mode of a contact that begins to slide with less friction than it had, STICK: none
@@ -153,10 +156,10 @@ FrictionProblemRef = by_reference(FrictionProblem, __name__)
 def friction_problem(room: int, coordinates: int, lcp: LcpWork) -> FrictionProblem:
     """For `room` closed contacts and as many bearings as coordinates; `lcp` is room for `problem_size` unknowns."""
     rows, blocks, side = 2 * room + coordinates, room + coordinates, problem_size(room, coordinates)
-    lengths = {"drag": room, "width": blocks, "span": blocks, "shift": blocks, "unit": blocks, "loaded": rows}
+    lengths = {"drag": room, "width": blocks, "span": blocks, "shift": blocks, "unit": blocks, "loaded": rows, "along": room}
     lengths |= dict.fromkeys(("rhs", "x", "other_rhs", "other_x"), side)
     counts = {"solvers": len(Solver), "sizes": len(LARGEST) + 1, "bearing": coordinates}
-    counts |= {"element": room, "begun": room, "block": blocks}
+    counts |= {"element": room, "begun": room, "block": blocks, "pressed": rows}
     parts: dict[str, Any] = {name: np.zeros(length) for name, length in lengths.items()}
     parts |= {name: np.zeros(length, np.int64) for name, length in counts.items()}
     parts |= {name: np.zeros((side, side)) for name in ("A", "B")}
@@ -307,6 +310,50 @@ def jams(G, drag, m, i, near=PAINLEVE):
         if j != i and (G[2 * i, 2 * j] != 0.0 or G[2 * i, 2 * j + 1] != 0.0 or G[2 * i + 1, 2 * j] != 0.0):
             return False
     return True
+
+
+LEAST_BARE = 1e-7  # of a determinant: of a smaller one rounding leaves no share as small as `PAINLEVE`
+
+
+@kernel
+def share_left(G, along, rows, n, A):
+    """How much less than without friction the forces in `rows[:n]` of G part their bodies: det(G - friction) / det(G).
+
+    The same for contacts that hand forces on to each other as `jams` asks of one by itself, where it is 1 - mu G_c / G_N.
+    `along`: friction per normal force of contacts that slide, against their slip, 0 where they stick. 1 where forces are
+    redundant. Overwrites A.
+    """
+    bare = _determinant(G, along, rows, n, 0.0, A)
+    return _determinant(G, along, rows, n, 1.0, A) / bare if bare > LEAST_BARE else 1.0
+
+
+@kernel
+def _determinant(G, along, rows, n, share, A):
+    """Of G in those rows, scaled to a unit diagonal, with that share of the friction."""
+    for i in range(n):
+        for j in range(n):
+            entry, column = G[rows[i], rows[j]], rows[j]
+            if column % 2 == 0:
+                entry -= share * along[column // 2] * G[rows[i], column + 1]
+            A[i, j] = entry * unit_scale(G[rows[i], rows[i]]) * unit_scale(G[column, column])
+    product = 1.0
+    for k in range(n):
+        best = k
+        for i in range(k + 1, n):
+            if abs(A[i, k]) > abs(A[best, k]):
+                best = i
+        if A[best, k] == 0.0:
+            return 0.0
+        if best != k:
+            product = -product
+            for j in range(n):
+                A[k, j], A[best, j] = A[best, j], A[k, j]
+        product *= A[k, k]
+        for i in range(k + 1, n):
+            factor = A[i, k] / A[k, k]
+            for j in range(k + 1, n):
+                A[i, j] -= factor * A[k, j]
+    return product
 
 
 @kernel

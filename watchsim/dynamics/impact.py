@@ -289,6 +289,9 @@ def _compress(m, sizes, jam_speed, G, problem, phases):
     return solver != Solver.FAILED
 
 
+RAISED = 3.0  # times `PAINLEVE`: what takes contacts past a bound that depends on the friction of all of them
+
+
 @kernel
 def raise_friction(G, m, problem):
     """Let friction grip by as little more as takes contacts that count as jammed past the bound where they are.
@@ -299,6 +302,9 @@ def raise_friction(G, m, problem):
         own, both = G[2 * i, 2 * i], problem.friction_sign[2 * i + 1] * G[2 * i, 2 * i + 1]
         if problem.element[i] >= 0 and abs(own - problem.drag[i] * both) <= PAINLEVE * own:
             problem.drag[i] = (1.0 + PAINLEVE) * own / both
+            problem.width[problem.element[i]] = 2.0 * problem.drag[i]
+        elif problem.element[i] >= 0 and problem.last.together == 1:
+            problem.drag[i] *= 1.0 + RAISED * PAINLEVE
             problem.width[problem.element[i]] = 2.0 * problem.drag[i]
 
 

@@ -26,7 +26,7 @@ from watchsim.dynamics.bearings import (
 )
 from watchsim.dynamics.delassus import apply, copy, drive_through_contacts, fill_delassus, own_acceleration
 from watchsim.dynamics.forces import add_drag, add_loads, damping_power, drag_power, drive_power, forces
-from watchsim.dynamics.friction import jams
+from watchsim.dynamics.friction import jams, share_left
 from watchsim.dynamics.moving_frame import is_shaken
 from watchsim.dynamics.redundant import keep_independent, solve_small, unit_scale
 from watchsim.jit import hot_kernel, kernel
@@ -464,10 +464,13 @@ def _watch(mode, lenience, options, m, system, modes, closed, out_monitors):
 
     The mode holds while all are positive.
     """
-    smallest = math.inf
+    smallest, together = math.inf, m > 1 and _slide_into_jam(m, system, modes)
     for i in range(m):
         code, kin, k = MONITORS * i, closed.kin[i], closed.ids[i]
-        slides_into_jam = modes.unknown[i] < 0 and jams(system.G, modes.drag[i], m, i, PAINLEVE_WATCHED * PAINLEVE)
+        slides_into_jam = together and modes.drag[i] != 0.0
+        slides_into_jam = slides_into_jam or (
+            modes.unknown[i] < 0 and jams(system.G, modes.drag[i], m, i, PAINLEVE_WATCHED * PAINLEVE)
+        )
         out_monitors[code + NORMAL] = normal_margin(system, i, lenience * options.force_zero)
         out_monitors[code + TANGENTIAL] = _tangential_monitor(
             modes.friction[i], mode[k], kin.gT_dot, lenience, options, i, system
@@ -477,6 +480,31 @@ def _watch(mode, lenience, options, m, system, modes, closed, out_monitors):
         for kind in range(MONITORS):
             smallest = min(smallest, out_monitors[code + kind])
     return smallest
+
+
+SMALL_PIVOT = 1e-3  # of the first one
+
+
+@kernel
+def _slide_into_jam(m, system, modes):
+    """True if the friction of the m contacts leaves next to nothing of how their forces together part the bodies.
+
+    Asked only where a pivot of the system just solved, whose triangle is in `modes.A`, shows that it may.
+    """
+    n, least, slides = m, 0.0, False
+    for i in range(m):
+        slides = slides or modes.drag[i] != 0.0
+        n += 1 if modes.unknown[i] >= 0 else 0
+    for k in range(n):
+        least = min(least, modes.A[k, k]) if k > 0 else modes.A[0, 0]
+    if not slides or least > SMALL_PIVOT * abs(modes.A[0, 0]):
+        return False
+    n = 0
+    for i in range(m):
+        modes.order[n], n = 2 * i, n + 1
+        if modes.unknown[i] >= 0:
+            modes.order[n], n = 2 * i + 1, n + 1
+    return share_left(system.G, modes.drag, modes.order, n, modes.A) <= PAINLEVE_WATCHED * PAINLEVE
 
 
 @kernel
