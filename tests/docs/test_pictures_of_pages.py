@@ -18,7 +18,7 @@ from draw_pictures import EXHIBITS, IMAGES, KEPT, MEASURED, WORDS, drawn, galler
 RECORDED: dict[str, list[str]] = json.loads(WORDS.read_text(encoding="utf-8"))
 GROUPS = groups()
 MADE = {name for group in GROUPS.values() for name in group}
-LONG = {"positions", "shock", "tolerances", "movies"}  # which are not drawn again by a test
+LONG = {"live", "positions", "shock", "tolerances", "movies"}  # which are not drawn again by a test
 
 
 def test_every_picture_has_a_script_or_a_reason() -> None:

@@ -28,6 +28,7 @@ from watchsim.analysis.forces import forces
 from watchsim.analysis.sound import BLOW
 from watchsim.analysis.timeline import shown_beats
 from watchsim.geometry.loops import polyline
+from watchsim.pages.charts import WIDTH
 from watchsim.pages.compare_page import comparison_page
 from watchsim.pages.player import drawn_parts
 from watchsim.pages.report_page import page_text, report
@@ -611,6 +612,64 @@ def test_on_a_phone_held_sideways_picture_and_controls_are_seen_at_once(profile:
         assert bar["y"] + bar["height"] <= 360.0 and bar["height"] < 60.0
         assert picture["height"] > 200.0 and picture["y"] + picture["height"] <= bar["y"] + 25.0
         assert all(one.bounding_box()["x"] + one.bounding_box()["width"] <= 740.0 for one in page.locator(".bar button").all())
+
+
+def test_a_long_verdict_is_cut_on_a_phone_held_sideways_until_it_is_touched(written: Path) -> None:
+    with opened(written, 740, 360) as page:
+        verdict = page.locator(".verdict")
+        told, line = verdict.inner_text(), verdict.bounding_box()
+        assert len(told) > 110 and told.startswith("Not settled yet")
+        assert line["height"] < 30.0 and line["x"] + line["width"] <= 740.0
+        assert verdict.evaluate("one => one.scrollWidth > one.clientWidth && getComputedStyle(one).textOverflow === 'ellipsis'")
+        verdict.hover()
+        assert verdict.evaluate("one => one.scrollWidth <= one.clientWidth") and verdict.bounding_box()["height"] > 30.0
+
+
+CLASHES = """() => [...document.querySelectorAll('.phases tr')].flatMap((row) => {
+  const words = (cell) => {
+    const range = document.createRange();
+    range.selectNodeContents(cell);
+    return range.getBoundingClientRect();
+  };
+  const spans = [...row.cells].map(words);
+  return spans.slice(1).map((span, k) => span.left - spans[k].right).filter((gap) => gap < 4);
+})"""  # between the words of neighbouring cells, CSS pixels
+
+
+@pytest.mark.parametrize("profile", ["coaxial", "detent"])
+def test_words_of_neighbouring_columns_stay_apart_at_any_width(profile: str, tmp_path: Path) -> None:
+    run = simulate(load(Path(str(profiles_dir())) / profile / "scene.toml"), duration=2.5, record="all")
+    target = report(run, tmp_path / "page.html")
+    for width in (360, 768, 1280):
+        with opened(target, width, 800) as page:
+            assert page.locator(".phases tr").count() > 4 and page.evaluate(CLASHES) == []
+            assert page.evaluate("document.documentElement.scrollWidth") == width
+            ends = "[...document.querySelectorAll('.energy text')].map((one) => one.getBBox().x + one.getBBox().width)"
+            assert max(page.evaluate(ends)) <= WIDTH
+
+
+def test_rounding_of_a_torque_does_not_fill_its_panel(run: Trajectory, written: Path) -> None:
+    """A lever on its banking has no torque but that of rounding, a million times and more below that of its jumps."""
+    largest = float(np.abs(run.a[:, run.slices["lever"]]).max()) * run.scene.body("lever").inertia
+    still = np.abs(run.u[:, run.slices["lever"].start]) < 1e-9
+    ends = np.flatnonzero(np.diff(still.astype(int)))
+    start, end = max(zip(run.t[ends[:-1]], run.t[ends[1:]], strict=True), key=lambda span: span[1] - span[0])
+    with opened(written) as page:
+        page.select_option("#whose", label="lever")
+        plot = (
+            page.locator("#plots .plot b")
+            .all_inner_texts()
+            .index(next(text for text in page.locator("#plots .plot b").all_inner_texts() if text.startswith("Net torque")))
+        )
+        page.evaluate("t => watchsim.seek(t)", 0.5 * (start + end))
+        whole = page.evaluate("plot => watchsim.limits(plot)", plot)
+        for _ in range(6):
+            page.click("#narrow")
+        page.wait_for_timeout(200)
+        low, high = page.evaluate("plot => watchsim.limits(plot)", plot)
+        assert low < 0.0 < high and high - low < 0.1 * (whole[1] - whole[0])  # nothing of a jump is shown
+        assert high - low > 0.9e-3 * largest
+        assert page.said == []
 
 
 def test_names_with_underscores_are_read_as_words_and_wear_takes_the_colours_of_the_page(tmp_path: Path) -> None:

@@ -400,3 +400,13 @@ def test_pallets_have_one_word_wherever_they_are_named(profile: str, duration: f
     assert {f"entry {word}", f"exit {word}"} <= names
     assert any(f"entry {word}" in panel for panel in panels) and any(f"entry {word}" in event for event in events)
     assert ("clock" if profile == "graham" else "watch") in (summary(run)["verdict_message"] or "clock watch")
+
+
+def test_a_detent_has_one_stone_that_locks() -> None:
+    run = simulate(load(profiles_dir() / "detent"), 2.5, record="all")
+    names = [one.text for one in part_names(run.scene)]
+    events = {event.split(": ")[0] for _, event in page_parts(run)[1]["events"]}
+    assert names.count("locking stone") == names.count("passing spring") == 1
+    assert {beat.pallet for beat in shown_beats(run)} == {"locking stone"}
+    assert {"wheel / locking stone", "detent / banking"} <= events
+    assert not any(word in " ".join((*names, *events)) for word in ("entry", "exit", "lever"))

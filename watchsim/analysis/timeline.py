@@ -14,7 +14,7 @@ from watchsim.analysis.flows import Flows, Losses, flows, friction_by_pair, impa
 from watchsim.analysis.phases import NAMES, Phase, Phases, phase_columns
 from watchsim.analysis.timing import Beats, beats, between, contact_columns, nominal_period
 from watchsim.mechanism.compile import Compiled, compile_scene
-from watchsim.scene.roles import Roles, drive_direction, pallet_word, with_anchor
+from watchsim.scene.roles import Roles, drive_direction, pallet_name, with_anchor
 from watchsim.scene.scene import STATISTICS
 from watchsim.simulation import EVENT_DRIVEN
 from watchsim.simulation.trajectory import Array, Trajectory
@@ -278,19 +278,13 @@ RESTING = ("locked", "recoil")  # and the last
 class Beat:
     """One beat: its phases in order, and of each what friction took by pair of bodies, J (empty where that was not asked for).
 
-    `residual`: what is missing from the energy balance of the beat, J, friction as worked out from forces. `kind`: what
-    pallets are called.
+    `residual`: what is missing from the energy balance of the beat, J, friction as worked out from forces. `pallet`: what is
+    unlocked, "entry stone" or the like; "" where that is not known.
     """
 
     stages: tuple[Stage, ...]
     friction: tuple[dict[str, float], ...]
-    kind: str = "stone"
-
-    @property
-    def pallet(self) -> str:
-        """ "entry stone" or the like: what is unlocked; "" where that is not known."""
-        side = self.stages[0].pallet
-        return f"{side} {self.kind}" if side else ""
+    pallet: str = ""
 
     @property
     def start(self) -> float:
@@ -339,14 +333,17 @@ def shown_beats(run: Trajectory, window: Sequence[float] | None = None, rubbed: 
         stages = timeline(run, found, window)
     if not stages:
         raise ValueError("no beat of an escapement was recorded whole there")
-    word = pallet_word(run.scene)
     beats_shown = ([one for one in stages if one.beat == beat] for beat in sorted({one.beat for one in stages}))
-    return [_beat(run, own) if rubbed else Beat(tuple(own), (), word) for own in beats_shown]
+    return [_beat(run, own) if rubbed else Beat(tuple(own), (), _pallet(run, own)) for own in beats_shown]
+
+
+def _pallet(run: Trajectory, stages: list[Stage]) -> str:
+    return pallet_name(run.scene, stages[0].pallet) if stages[0].pallet else ""
 
 
 def _beat(run: Trajectory, stages: list[Stage]) -> Beat:
     ends = [one.phase.start for one in stages] + [stages[-1].phase.end]
-    return Beat(tuple(stages), tuple(friction_by_pair(run, ends)), pallet_word(run.scene))
+    return Beat(tuple(stages), tuple(friction_by_pair(run, ends)), _pallet(run, stages))
 
 
 NANO, KILO = 1e9, 1e-3  # bodies that reach 1000 °/s have their velocity in thousands

@@ -22,7 +22,7 @@ from watchsim.analysis.forces import absolute, forces
 from watchsim.analysis.timeline import pallet_side
 from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.model import CORNER, FULL, LINE
-from watchsim.scene.roles import pallet_word, pitch, touching, with_anchor
+from watchsim.scene.roles import pallet_name, pitch, touching, with_anchor
 from watchsim.simulation.trajectory import NO_ROW, Array, Trajectory, frames
 
 YEAR = 365.25 * 86400.0  # s
@@ -252,7 +252,6 @@ class _Names:
         self._run, self._compiled, self._parts = run, compiled, with_anchor(run.scene)
         self._teeth = teeth(run, compiled)
         self._roles = {(body, layer): text for body, layer, text in touching(run.scene, self._parts)}
-        self._pallet = pallet_word(run.scene)
         self._known: dict[tuple[int, int], str] = {}
 
     def of(self, side: int, other: int, time: float, local: Array) -> str:
@@ -267,7 +266,8 @@ class _Names:
         owners, parts = self._compiled.owners, self._parts
         role = self._roles.get((owners[side], self._compiled.layers[side]))
         if parts.lever == owners[side] and parts.wheel == owners[other] and role is None:
-            return f"{pallet_side(self._run, self._compiled, parts, side, time)} {self._pallet} {self._face(side, local)}"
+            where = pallet_side(self._run, self._compiled, parts, side, time)
+            return f"{pallet_name(self._run.scene, where)} {self._face(side, local)}"
         return role or self._compiled.layers[side]
 
     def _face(self, side: int, local: Array) -> str:

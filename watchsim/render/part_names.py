@@ -31,7 +31,7 @@ from watchsim.scene.roles import (
     drive_direction,
     layer_of,
     middle_of,
-    pallet_word,
+    pallet_name,
     touching,
     with_anchor,
 )
@@ -90,7 +90,7 @@ def _pallets(scene: Scene, found: Roles) -> Iterator[PartName]:
             yield from _by_sides(scene, found)
             return
         alone = loop.length < ALONE * sum(one.length for one in loops_of(lever))
-        yield PartName(f"{name} {pallet_word(scene)}", lever.name, middle_of([loop]) if alone else place)
+        yield PartName(pallet_name(scene, name), lever.name, middle_of([loop]) if alone else place)
 
 
 def _by_sides(scene: Scene, found: Roles) -> Iterator[PartName]:
@@ -102,6 +102,8 @@ def _by_sides(scene: Scene, found: Roles) -> Iterator[PartName]:
         other = next((name for name in sides if found.wheel in sides and name != found.wheel), None)
         if other is not None and found.lever in (other, scene.body(other).on):
             places += [(other, middle_of([loop])) for loop in layer_of(scene.body(other), sides[other])]
+    if len(places) == 1 and found.lever != found.oscillator:  # a detent's
+        yield PartName(pallet_name(scene, ""), *places[0])
     if len(places) != len(SIDES):
         return
     compiled = compile_scene(scene)
@@ -112,7 +114,7 @@ def _by_sides(scene: Scene, found: Roles) -> Iterator[PartName]:
     turn = line[0] * (at[0] - wheel)[1] - line[1] * (at[0] - wheel)[0]
     order = places if drive_direction(scene, found.wheel) * turn < 0.0 else places[::-1]
     for name, (body, place) in zip(SIDES, order, strict=True):
-        yield PartName(f"{name} {pallet_word(scene)}", body, place)
+        yield PartName(pallet_name(scene, name), body, place)
 
 
 def _touching(scene: Scene, found: Roles) -> Iterator[PartName]:
@@ -135,7 +137,7 @@ class Met:
     def __init__(self, run: Trajectory) -> None:
         self._run, self._parts, self._compiled = run, with_anchor(run.scene), compile_scene(run.scene)
         self._names = {(body, layer): text for body, layer, text in touching(run.scene, self._parts)}
-        self._kind, self._order = pallet_word(run.scene), [body.name for body in run.scene.bodies]
+        self._order = [body.name for body in run.scene.bodies]
         self._known: dict[int, str] = {}
 
     def words(self, contact: int, time: float) -> str:
@@ -160,7 +162,7 @@ class Met:
         if body == lever and wheel in bodies:
             met = self._compiled.model.contacts[contact]
             stone = next(side for side in (int(met.a), int(met.b)) if self._compiled.owners[side] == body)
-            return f"{pallet_side(self._run, self._compiled, self._parts, stone, time)} {self._kind}"
+            return pallet_name(self._run.scene, pallet_side(self._run, self._compiled, self._parts, stone, time))
         return _plain(body, layer)
 
 

@@ -348,15 +348,28 @@ PALLETS = ("stone", "pallet", "pin")
 
 def pallet_word(scene: Scene) -> str:
     """ "pin" where what locks the wheel is round, "stone" where it is an outline of its own on a lever, else "pallet"."""
-    found = with_anchor(scene)
-    if found.wheel is None or found.lever is None or found.lever == found.oscillator:
+    found, met = with_anchor(scene), _locking(scene)
+    if found.lever is None or found.lever == found.oscillator:
         return "pallet"
-    lever, sides = scene.body(found.lever), [{side.body: side.layer for side in contact.sides} for contact in scene.contacts]
-    met = [loop for one in sides if {found.wheel, lever.name} == set(one) for loop in layer_of(lever, one[lever.name])]
+    lever = scene.body(found.lever)
     if met and all(isinstance(loop.edges[0], Arc) and loop.edges[0].is_circle for loop in met):
         return "pin"
     whole = sum(loop.length for loop in (*lever.loops, *lever.decoration))
     return "stone" if min((loop.length for loop in met), default=0.0) < ALONE * whole else "pallet"
+
+
+def pallet_name(scene: Scene, side: str) -> str:
+    """ "entry stone" or the like, of what locks on that side; a detent has one stone, which locks every time."""
+    alone = roles(scene).lever is not None and len(_locking(scene)) == 1
+    return f"{'locking' if alone else side} {pallet_word(scene)}"
+
+
+def _locking(scene: Scene) -> list[Loop]:
+    """The outlines of the lever that the wheel meets."""
+    found = with_anchor(scene)
+    contacts = [{side.body: side.layer for side in contact.sides} for contact in scene.contacts]
+    pairs = [sides for sides in contacts if {found.wheel, found.lever} == set(sides)]
+    return [loop for sides in pairs if found.lever for loop in layer_of(scene.body(found.lever), sides[found.lever])]
 
 
 # With what do lever, oscillator and banking touch each other? Names of layers are as free as those of bodies.
@@ -375,7 +388,8 @@ def touching(scene: Scene, found: Roles) -> Iterator[tuple[str, str | None, str]
     for sides in contacts:
         fixed = next((name for name in sides if scene.body(name).motion == "fixed"), None)
         if fixed is not None and lever in sides:
-            yield from ((fixed, sides[fixed], "banking"), (lever, sides[lever], "lever"))
+            detent = any(body.on == lever for body in scene.bodies)
+            yield from ((fixed, sides[fixed], "banking"), (lever, sides[lever], "detent" if detent else "lever"))
         elif {lever, own} == set(sides):
             loops = layer_of(scene.body(own), sides[own])
             is_pin = math.hypot(*middle_of(loops)) > OFF_PIVOT * reach_of(loops)

@@ -23,7 +23,7 @@ from watchsim.scene.toml import digest, parsed
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.trajectory import Trajectory
 from watchsim.studies.steady import steady
-from watchsim.units import UnitError, parse, split
+from watchsim.units import UnitError, parse, split, true_minus
 
 SAME = 1e-12  # of a value: what writing it in another unit may change
 TIMED = {"amplitude_deg": "°", "rate_s_per_d": "s/d", "beat_error_ms": "ms", "period_s": "s"}
@@ -292,4 +292,4 @@ def _value(value: Any) -> str:
         shown = f"{float(number.replace('−', '-')):.9g}{shown[len(number) :]}" if unit else shown
     except (UnitError, ValueError, TypeError):
         pass
-    return shown if len(shown) <= LONGEST else f"{shown[:LONGEST]}…"
+    return true_minus(shown if len(shown) <= LONGEST else f"{shown[:LONGEST]}…")

@@ -330,6 +330,7 @@ window.watchsim = {
   seen: (name, points) => { const poses = motion.poses(player.t), b = data.bodies.findIndex((body) => body.name === name); view.aim(poses); return points.map(([x, y]) => view.screen(...view.point(poses, b, x, y))); },
   closed: (t) => { const poses = motion.poses(t); return contacts.all.filter((one) => one.holds(t)).map((one) => ({ name: one.name, force: one.press(t), place: one.touch(view, poses).slice(0, 2) })); },
   value: (plot, t) => curves.of(plots.body)[plot].lines[0].value(t),
+  limits: (plot) => plots.panels[plot].limits.map((value) => value * plots.panels[plot].factor),
   names: () => { const poses = motion.poses(player.t); view.aim(poses); return names.placed(ctx, solids.on ? solids.sight(view) : view, poses, look, false); },
   numbered: (only) => { solids.draw(view, motion.poses(player.t), { ...look, faded: new Set(data.bodies.map((_, b) => b).filter((b) => only !== undefined && b !== only)), chosen: -1 }, false, true); return $("solid").toDataURL(); },
   corner: () => view.corner,

@@ -72,7 +72,7 @@ class Scenery {
     ctx.globalAlpha = 1;
     if (!look.small) this.bodies.forEach((body, b) => { if (body.motion === "pivot") this.ring(ctx, view, poses, b, look); });
     for (const zigzag of this.zigzags) zigzag.draw(ctx, view, poses, look);
-    this.haunted(ctx, view, poses, look);
+    if (!look.small) this.haunted(ctx, view, poses, look);
   }
 
   shadow(ctx, view, poses, part, look) {
