@@ -149,6 +149,8 @@ def _run(args: argparse.Namespace, held: contextlib.ExitStack) -> int:
             plotted=extras.plots,
             to_the_end=args.to_the_end,
         )
+        if trajectory.stop == Stop.FOREGONE:  # before pictures are drawn
+            say(f"Ended early (--to-the-end continues): {trajectory.stop_message}.")
         if trajectory.stop == Stop.INTERRUPTED and folder.is_dir() and any(folder.iterdir()) and not goes_on:
             kept, folder = folder, interrupted_place(folder)
             goal = dataclasses.replace(goal, folder=folder, replace=False)
@@ -263,8 +265,6 @@ def status(run: Trajectory, summary: dict[str, Any]) -> int:
     if run.stop == Stop.INTERRUPTED:
         say(f"Stopped at {run.stop_message}.")
         return stopping.status()
-    if run.stop == Stop.FOREGONE:
-        say(f"Ended early (--to-the-end continues): {run.stop_message}.")
     if stopping.requested():
         say("Interrupted while writing: everything was kept except the pictures that were not drawn yet.")
         return stopping.status()
