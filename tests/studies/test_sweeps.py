@@ -90,6 +90,16 @@ def test_what_fails_keeps_its_reason(bench):
     assert "nothing" in incline.rows[0]["message"]
 
 
+def test_dimensions_that_cannot_be_drawn_are_points_unless_all_are():
+    """A cylinder's shell would come round at 0.05 and 0.04."""
+    scene = ws.designs.cylinder(torque="0.4 µN·m").scene()
+    found = ws.sweep(scene, {"design.friction": [0.05, 0.15]})
+    assert [row["verdict"] for row in found.rows] == [None, "ticks"]
+    assert "the shell comes round" in found.rows[0]["message"]
+    with pytest.raises(ws.SceneError, match="the shell comes round"):
+        ws.sweep(scene, {"design.friction": [0.05, 0.04]})
+
+
 class Stopping(Here):
     """An executor that is interrupted after some rows, as by Ctrl-C."""
 

@@ -108,7 +108,8 @@ def _sweep(args: argparse.Namespace, scene: Scene, outputs: tuple[Output, ...], 
         print(f"Results: {folder}")
     without = sum(row[outputs[0].column] is None for row in done.rows)
     if without:
-        say(f"{without} of {len(done.rows)} points have no {outputs[0].label}; the column message says why.")
+        have = "has" if without == 1 else "have"
+        say(f"{without} of {len(done.rows)} points {have} no {outputs[0].label}; the column message says why.")
     return status_of(done.whole, folder, MISSED if without == len(done.rows) else FINE)
 
 

@@ -19,7 +19,7 @@ from watchsim.geometry.primitives import Point
 from watchsim.scene.errors import Fault, SceneError
 from watchsim.scene.forces import Bearing, Contact, Damping, LineSpring, Shock, Spring, Torque
 from watchsim.scene.solids import Solid
-from watchsim.units import LENGTH, Dimension, known_unit, show
+from watchsim.units import LENGTH, Dimension, known_unit, metric, show
 
 # How much of a run is kept?
 
@@ -279,6 +279,8 @@ class Tolerance:
     @property
     def unit(self) -> str:
         """In which people read it."""
+        if self.dimension.si.startswith("N"):
+            return metric(self.nominal, self.dimension.si).split()[1]
         return ("µm" if self.dimension is LENGTH else self.dimension.usual[1]) if self.dimension.si else ""
 
     def shown(self, value: float) -> str:

@@ -79,16 +79,25 @@ def axes_from_values(scene: Scene, values: Mapping[str, Sequence[Any]]) -> tuple
 
 
 def checked(scene: Scene, axes: Sequence[Axis], found: Sequence[Fault] = ()) -> tuple[Axis, ...]:
-    """The axes, where each key is one of the scene and takes its first value; SceneError lists all faults and those `found`."""
+    """The axes, where each key is one of the scene and takes a value of it; SceneError lists all faults and those `found`.
+
+    Values that a scene refuses are points of a study, with their reason; where the first, the middle and the last one are, it
+    is the key that is wrong.
+    """
     faults = list(found)
     for i, axis in enumerate(axes):
         if any(axis.key == earlier.key for earlier in axes[:i]):
             faults.append(Fault(axis.key, "is given twice; name each key once", place="sweep"))
             continue
-        try:
-            scene.set(axis.key, as_typed(axis.values[0], axis.usual))
-        except SceneError as error:
-            faults += (replace(fault, place="sweep") for fault in error.faults)
+        refused = []
+        for k in sorted({0, len(axis.values) // 2, len(axis.values) - 1}):
+            try:
+                scene.set(axis.key, as_typed(axis.values[k], axis.usual))
+                break
+            except SceneError as error:
+                refused.append(error)
+        else:
+            faults += (replace(fault, place="sweep") for fault in refused[0].faults)
     points = int(np.prod([len(axis.values) for axis in axes], dtype=float)) if axes else 0
     if points > MOST:
         faults.append(Fault(axes[0].key, f"these are {points} points; a sweep takes at most {MOST}", place="sweep"))
