@@ -14,6 +14,7 @@ import numpy as np
 
 from watchsim.scene.assign import dimension_of, full_key
 from watchsim.scene.errors import Fault, SceneError
+from watchsim.scene.keys import DESIGN
 from watchsim.scene.scene import Scene
 from watchsim.units import NUMBER, Dimension, UnitError, parse, show, split
 
@@ -81,8 +82,7 @@ def axes_from_values(scene: Scene, values: Mapping[str, Sequence[Any]]) -> tuple
 def checked(scene: Scene, axes: Sequence[Axis], found: Sequence[Fault] = ()) -> tuple[Axis, ...]:
     """The axes, where each key is one of the scene and takes a value of it; SceneError lists all faults and those `found`.
 
-    Values that a scene refuses are points of a study, with their reason; where the first, the middle and the last one are, it
-    is the key that is wrong.
+    Dimensions that a design refuses are points of a study, with their reason, unless the first, the middle and the last are.
     """
     faults = list(found)
     for i, axis in enumerate(axes):
@@ -90,7 +90,8 @@ def checked(scene: Scene, axes: Sequence[Axis], found: Sequence[Fault] = ()) -> 
             faults.append(Fault(axis.key, "is given twice; name each key once", place="sweep"))
             continue
         refused = []
-        for k in sorted({0, len(axis.values) // 2, len(axis.values) - 1}):
+        last = len(axis.values) - 1 if axis.key.startswith(f"{DESIGN}.") else 0
+        for k in sorted({0, last // 2, last}):
             try:
                 scene.set(axis.key, as_typed(axis.values[k], axis.usual))
                 break
