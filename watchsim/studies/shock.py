@@ -222,7 +222,7 @@ def _guarded(beside: Unstruck, run: Trajectory, at: float) -> int:
 class ShockMap:
     """Blows of one speed in all directions and phases: row by row, all phases of each direction.
 
-    directions_deg, phases  as asked for; `whole` is False after Ctrl-C, with the blows so far
+    directions_deg, phases  as requested; `whole` is False after Ctrl-C, with the blows so far
     """
 
     title: str
