@@ -54,6 +54,15 @@ def test_a_value_in_another_unit_is_no_change_and_a_dimension_of_the_design_come
     assert "bodies.pendulum.drawing" in changed
 
 
+def test_what_changes_no_motion_is_named_only_where_every_scene_says_it():
+    """The profile has [expect] and no [tolerances]."""
+    scene = ws.load(GRAHAM)
+    bare = ws.designs.graham().scene()
+    assert not [key for key in ws.compare(scene, bare).changed if key.startswith(("expect", "tolerances"))]
+    other = scene.set("expect.amplitude.value", "2.2°")
+    assert list(ws.compare(scene, other).changed) == ["expect.amplitude.value"]
+
+
 def test_the_run_of_a_scene_differs_from_it_in_nothing_and_curves_of_both_are_drawn(tmp_path, capsys):
     first, second = tmp_path / "a", tmp_path / "b"
     main(["run", GRAHAM, "-o", str(first), "--no-plots", "--duration", "4 s"])

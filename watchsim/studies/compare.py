@@ -182,12 +182,18 @@ def _places(scene: Scene, bodies: Mapping[str, Mapping[str, float]]) -> Iterator
 # What was changed in the scene?
 
 
+BESIDE = ("expect", "tolerances")  # tables of a scene that change no motion
+
+
 def _changed(scenes: Sequence[Scene]) -> dict[str, tuple[Any, ...]]:
     """Key -> its values, of those keys that are not the same everywhere; dimensions of a design first.
 
-    Of scenes that do not all follow from one design, the drawings and numbers are compared that they come to.
+    Of scenes that do not all follow from one design, the drawings and numbers are compared that they come to. What changes no
+    motion is left out where only some of them say it.
     """
-    flat = [dict(_flat(_completed(scene))) for scene in scenes]
+    whole = [_completed(scene) for scene in scenes]
+    beside = [name for name in BESIDE if not all(one.get(name) for one in whole)]
+    flat = [dict(_flat({name: value for name, value in one.items() if name not in beside})) for one in whole]
     designs = {one.get(f"{DESIGN}.of") for one in flat}
     if len(designs) > 1:
         flat = [{key: value for key, value in one.items() if not key.startswith(f"{DESIGN}.")} for one in flat]
@@ -281,7 +287,7 @@ def _number(value: Any, error: float | None, factor: float, sign: bool = False) 
     if error is None or not 0.0 < factor * error < math.inf:
         return f"{factor * value:{plus}.{DIGITS}g}".replace("-", "−")
     decimals = min(max(0, 1 - math.floor(math.log10(factor * error))), 9)
-    return f"{factor * value:{plus}.{decimals}f}".replace("-", "−")
+    return f"{round(factor * value, decimals) + 0.0:{plus}.{decimals}f}".replace("-", "−")  # no negative zero
 
 
 def _value(value: Any) -> str:
