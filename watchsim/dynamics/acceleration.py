@@ -150,7 +150,9 @@ def decide_modes(model, closed, m, bearings, speed_zero, system, problem, out_gr
         system.size[row] = abs(system.b[row])
     if problem.last.coupled:
         trace_loads(model, closed, m, rows, 1.0, system, problem)
-    problem.begun[:m], problem.last.together = STICK, 0
+    if problem.last.keeps == 0:
+        problem.begun[:m] = STICK
+    problem.last.keeps = problem.last.together = 0
     elements, begins = -1, True
     while begins:
         elements = _solve(model, closed, m, bearings, speed_zero, system, problem)
@@ -187,6 +189,9 @@ def _solve(model, closed, m, bearings, speed_zero, system, problem):
         fill_rhs(problem.loaded, m, elements, problem)
     pressed = press_unloaded(model, closed, m, system, problem)
     solver = solve_contacts(m, elements, bearings, Level.ACCELERATION, problem)
+    if pressed and solver == Solver.FAILED:
+        fill_rhs(problem.loaded, m, elements, problem)
+        pressed, solver = False, solve_contacts(m, elements, bearings, Level.ACCELERATION, problem)
     if solver == Solver.FAILED:
         return -1
     if pressed:

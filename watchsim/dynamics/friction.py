@@ -97,6 +97,7 @@ class LastProblem:
     jammed: int  # 1: of the bearings no friction goes with the load that it makes
     coupled: int  # 1: loads of bearings are solved with it, see coupled_loads.py
     sliders: int  # bearings that move, in a coupled problem: behind those that may hold
+    keeps: int  # 1: what has begun to slide with less friction in the round before goes on; for one decision
     together: int  # 1: contacts that hand forces on to each other slide into a jam
     seized: int  # 1: a bearing has jammed, and the impulses that stop it are to be found
 

@@ -61,6 +61,11 @@ def standing_bearings(label, island, grip, out_bearing):
     return bearings
 
 
+# Of the rounds: from there on a contact that has begun to slide goes on. Its normal force may fall a little in the bearing's
+# favour as soon as it slides, by as much as it takes to hold it again.
+LASTING = 0.5
+
+
 @kernel
 def decide(model, state, island, m, options, system, problem, event, out_grip):
     """Modes of those of the island's m closed contacts that are in I_N, into `event.decided`, and the grips of its bearings.
@@ -79,6 +84,7 @@ def decide(model, state, island, m, options, system, problem, event, out_grip):
         if r == 0 and bearings == 0:
             fill_inverse(model, out_grip, system.inverse)
         else:
+            problem.last.keeps = 1 if number > LASTING * LOAD_ROUNDS else 0
             solved = decide_modes(model, event.rest, r, bearings, options.speed_zero, system, problem, out_grip, event.decided)
             count_problems(problem, state.counts)
         if len(model.bearings) == 0 or not solved:
@@ -106,6 +112,7 @@ def _decide_coupled(model, state, island, r, options, system, problem, event, ou
             add_drag(system.dry, out_grip, system.h)
             if number == 0:
                 aim_first(rest, r, bearings + last.sliders, start, problem)
+            last.keeps = 1 if number > LASTING * LOAD_ROUNDS else 0
             solved = decide_modes(model, rest, r, bearings, options.speed_zero, system, problem, out_grip, event.decided)
             count_problems(problem, state.counts)
             if not solved:
