@@ -219,7 +219,8 @@ def _column(
             shade(axes, (stage.phase for stage in one.stages), zero, grey=beat is None)
     for axes in panels[:-1]:
         axes.set_xticklabels([])
-    pallet = f", {beat.pallet}" if beat is not None and beat.pallet else ""
+    # A detent's one stone need not be told from another.
+    pallet = f", {beat.pallet}" if beat is not None and beat.pallet.startswith(("entry", "exit")) else ""
     words = f"ms after t = {zero:.4f} s" if beat is None else f"ms from {beat.first.removeprefix('beginning of the ')}{pallet}"
     panels[-1].set_xlabel(words, fontsize=style.SMALL, labelpad=1.5)
     if beat is not None:
@@ -272,8 +273,10 @@ def plot_timeline(
     rows = [-(-len(one) // across) for one in instants]
     heights = [TITLE + count * (tall + WORDS) + LEADS + CURVES + TIME for count in rows]
     made = style.figure(width, style.HEADING + sum(heights), ax=ax)
-    what = "arrows: contact forces" if width >= style.NARROW else "forces"
-    style.heading(made, run.scene.title, f"In the middle of each phase; {what} on {' and '.join(_pushed_bodies(run))}")
+    bodies = " and ".join(_pushed_bodies(run))
+    wide_enough = width >= style.NARROW
+    about = f"In the middle of each phase; arrows: contact forces on {bodies}" if wide_enough else f"Forces on {pushed}"
+    style.heading(made, run.scene.title, about)
     posed = Posed(run.scene, compile_scene(run.scene))
     drawn, top = iter(arrows), style.HEADING
     for beat, own, count, height in zip(beats_shown, instants, rows, heights, strict=True):

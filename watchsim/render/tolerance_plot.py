@@ -15,6 +15,7 @@ from watchsim.render import style
 from watchsim.render.palette import FAINT, INK
 from watchsim.render.study_plot import output_label
 from watchsim.scene.keys import in_words
+from watchsim.scene.roles import timekeeper
 from watchsim.scene.scene import Scene
 from watchsim.studies.point import OUTPUTS, Output
 from watchsim.studies.sampling import deviation
@@ -195,7 +196,7 @@ def plot_limits(scene: Scene, width: float = style.FULL) -> Figure:
     """The tolerances of a scene: a line each, with the frequency of its deviations between its limits."""
     count = len(scene.tolerances)
     made = style.figure(width, AROUND + ROW * count)
-    style.heading(made, style.cut(scene.title), "what its watches are made to")
+    style.heading(made, style.cut(scene.title), f"what its {timekeeper(scene, many=True)} are made to")
     axes = made.add_axes((0.36, 6.0 / (AROUND + ROW * count), 0.2, ROW * count / (AROUND + ROW * count)))
     for row, one in enumerate(scene.tolerances):
         u = (np.arange(NODES) + 0.5) / NODES

@@ -332,10 +332,11 @@ def drive_direction(scene: Scene, name: str) -> float:
     return -1.0 if total < 0.0 else 1.0
 
 
-def timekeeper(scene: Scene) -> str:
-    """A "watch" has a spring on its oscillator, a "clock" a pendulum."""
+def timekeeper(scene: Scene, many: bool = False) -> str:
+    """A "watch" has a spring on its oscillator, a "clock" a pendulum; `many`: "watches", "clocks"."""
     own = roles(scene).oscillator
-    return "watch" if own is None or any(spring.body == own for spring in scene.springs) else "clock"
+    one = "watch" if own is None or any(spring.body == own for spring in scene.springs) else "clock"
+    return {"watch": "watches", "clock": "clocks"}[one] if many else one
 
 
 # What are the pallets of a mechanism called? By one word in names, sounds, plots, tables and messages.

@@ -212,7 +212,7 @@ def arguments(
                 Fault(name, f"choose {', '.join(METHODS)}" if least is None else f"from {least} to 1000", f" = {value}", PLACE)
             )
     if any(one.output == YIELD for one in (*goals, *keeps)) and not scene.tolerances:
-        faults.append(Fault("yield", "this scene has no [tolerances], so every watch is the nominal one", place=PLACE))
+        faults.append(Fault("yield", "this scene has no [tolerances], so every sample is the nominal one", place=PLACE))
     check(varied, goals, keeps, faults)
     return varied, goals, keeps
 

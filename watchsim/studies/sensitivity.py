@@ -20,7 +20,7 @@ from watchsim.displays import notebook_html
 from watchsim.scene.assign import dimension_of
 from watchsim.scene.errors import Fault, SceneError
 from watchsim.scene.keys import DESIGN, words_of
-from watchsim.scene.roles import nominal_frequency
+from watchsim.scene.roles import nominal_frequency, timekeeper
 from watchsim.scene.scene import Body, Scene
 from watchsim.studies.axes import Value
 from watchsim.studies.cycle import Cycle
@@ -313,7 +313,7 @@ def found(
     asked = _asked(scene, keys)
     cycle = steady(scene, tolerance=tolerance)
     if not cycle.found or cycle.amplitude_deg is None:
-        raise ValueError(f"this watch has no limit cycle whose sensitivity could be computed: {cycle.message or cycle.verdict}")
+        raise ValueError(f"this {timekeeper(scene)} has no limit cycle to be varied: {cycle.message or cycle.verdict}")
     # One oscillation is enough where the teeth are alike, but for the multiplier.
     brief = cycle.oscillations == 1 and all(one.name != "multiplier" for one in outputs)
     question = Question(scene, True, None, tolerance, float(np.radians(cycle.amplitude_deg)), brief)

@@ -117,7 +117,7 @@ def unstruck(scene: Scene, after: float = AFTER) -> Unstruck:
     run = simulate(replace(scene, record=EVERYTHING), SETTLING + after + 1.0)
     found = beats(run) if parts.oscillator is not None else None
     if found is None or np.count_nonzero(found.t >= SETTLING) < 4:
-        why = "nothing swings after the first second: a blow is held against a watch that goes"
+        why = "nothing swings after the first second: a blow is compared with a run that goes on"
         raise SceneError([Fault("bodies", why, place="shock")])
     return Unstruck(scene, run, found, parts, after, _outside(scene))
 

@@ -18,6 +18,7 @@ import numpy as np
 from watchsim.analysis.verdict_kinds import TICKS
 from watchsim.displays import notebook_html
 from watchsim.scene.keys import in_words
+from watchsim.scene.roles import timekeeper
 from watchsim.studies.chaos import Basis, indices
 from watchsim.studies.point import OUTPUTS, Row
 from watchsim.studies.sampling import Floats, Space, deviation
@@ -317,7 +318,7 @@ def _with_linear(found: Spread, space: Space, linear: Linear, column: str) -> Sp
         if not 0.9 < sigma / found.sigma < 1.1:
             words.append(f"the linear sigma is {sigma / found.sigma:.2g} times that of the samples")
         if abs(found.mean - level) > 0.2 * found.sigma:
-            words.append(f"the mean is {abs(found.mean - level) / found.sigma:.2g} sigmas away from the nominal watch")
+            words.append(f"the mean is {abs(found.mean - level) / found.sigma:.2g} sigmas away from the nominal value")
     return dataclasses.replace(
         found, nominal=abs(level) if column in SMOOTH else level, linear_sigma=sigma, linear_low=low, linear_high=high,
         remark="; ".join(words),
@@ -430,7 +431,7 @@ def _message(samples: Samples, share: Share) -> str:
     if not count:
         return "no sample was computed"
     low, high = (f"{100.0 * end:.4g}" for end in (share.low, share.high))
-    first = f"{100.0 * share.value:.4g} % of the watches are good ({low} to {high} %)"
+    first = f"{100.0 * share.value:.4g} % of the {timekeeper(samples.plan.scene, many=True)} are good ({low} to {high} %)"
     kinds = Counter(words for words in samples.wrong if words)
     if not kinds:
         return f"{first}; none of {count} samples fails"
