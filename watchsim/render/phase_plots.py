@@ -275,7 +275,7 @@ def plot_timeline(
     made = style.figure(width, style.HEADING + sum(heights), ax=ax)
     bodies = " and ".join(_pushed_bodies(run))
     wide_enough = width >= style.NARROW
-    about = f"In the middle of each phase; arrows: contact forces on {bodies}" if wide_enough else f"Forces on {pushed}"
+    about = f"In the middle of each phase; arrows: contact forces on {bodies}" if wide_enough else f"Forces on {bodies}"
     style.heading(made, run.scene.title, about)
     posed = Posed(run.scene, compile_scene(run.scene))
     drawn, top = iter(arrows), style.HEADING
