@@ -80,6 +80,7 @@ class Here:
 # kernels loaded, made before there are such threads; else, and to replace what was killed, interpreters of their own.
 
 LOSSES = 4  # for each worker: so many may be killed in a row without a single row
+MANY = 64  # points that wait: then a process is given one more than it works on
 LOST = "worker processes were ended from outside, perhaps for lack of memory"
 # With the path of this process: by itself an interpreter looks in the current folder first, where another copy may lie.
 BEGIN = "import sys; sys.path[:] = {path!r}; from watchsim.studies.workers import work; work()"
@@ -194,21 +195,24 @@ def _served(
 
 
 def _serve(process: _Process, question: Question, waiting: deque[tuple[int, Mapping[str, Value]]], made: _Made) -> None:
-    """Have points computed until none waits; the one that a killed process had waits again."""
+    """Have points computed until none waits; those that a killed process had wait again."""
     assert process.stdin and process.stdout
-    point = None
+    given: deque[tuple[int, Mapping[str, Value]]] = deque()
     try:
         pickle.dump(question, process.stdin)
-        while waiting:
-            point = waiting.popleft()
-            pickle.dump(point, process.stdin)
+        while True:
+            # Where many wait the process has the next one already: between two it would stand for a fiftieth of a short one.
+            while waiting and len(given) < (2 if len(waiting) > MANY else 1):
+                with contextlib.suppress(IndexError):  # another thread took the last one
+                    given.append(waiting.popleft())
+                    pickle.dump(given[-1], process.stdin)
+            if not given:
+                break
             process.stdin.flush()
             made.put(pickle.load(process.stdout))
-    except IndexError:  # another thread took the last one
-        pass
+            given.popleft()
     except (OSError, EOFError, pickle.UnpicklingError):
-        if point is not None:
-            waiting.append(point)
+        waiting.extend(given)
         made.put(None)
     with contextlib.suppress(OSError):
         process.stdin.close()
