@@ -96,7 +96,7 @@ def test_studies_show_themselves_and_print_in_a_line() -> None:
     assert "interrupted" in nothing._repr_html_() and "interrupted" in repr(nothing)
 
     by = {"amplitude_deg": Derivative(2e8, 2e8, True, 0.0)}
-    quantity = Quantity("torques.0.value", -1e-6, TORQUE, -1e-8, -1e-8, "1 %")
+    quantity = Quantity("torques.0.value", -1e-6, TORQUE, "µN·m", -1e-8, -1e-8, "1 %")
     cycle = Cycle(True, "ticks", amplitude_deg=280.0, rate_s_per_d=-5.5, beat_error_ms=0.01, multipliers=(0.88,))
     found = Sensitivity("A watch", cycle, outputs_named(["amplitude"]), (Effect(quantity, by),), True, 1.0)
     text = found._repr_html_()

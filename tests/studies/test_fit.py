@@ -195,8 +195,8 @@ def test_a_recording(tmp_path):
         ("time,angle\n0,1\n", ["--vary", "damping.0.viscos"], ["time", "viscos"]),
         (
             "t_s,angle_deg\n0,1\n1,x\n0.5,2,3\n",
-            ["--vary", "springs.0.stiffness=2:1 µN·m/rad"],
-            ['"x" is no number', "row 4", "first limit"],
+            ["--vary", "springs.0.stiffness=2:2 µN·m/rad"],
+            ['"x" is no number', "row 4", "limits must differ"],
         ),
         ("t_s,angle_deg\n0,1\n2,1\n1,3\n", ["--vary", "springs.0.stiffness"], ["grow from row to row"]),
         (
