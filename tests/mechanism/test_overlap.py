@@ -18,6 +18,7 @@ from watchsim.geometry.primitives import Arc, Line
 from watchsim.mechanism.overlap import (
     chord_points,
     common_parts,
+    cure_of,
     face_depth,
     meetings,
     overlap_faults,
@@ -136,8 +137,9 @@ def test_faults_name_bodies_layers_depth_and_place(desk, good):
 @pytest.mark.parametrize("overlapping", ["12°", "16°", "22°"])
 def test_an_angle_at_which_a_body_is_free_is_named_and_does_free_it(overlapping):
     swiss = profile("swiss_lever")
-    (fault,) = overlap_faults(swiss.set("bodies.wheel.angle", overlapping))
-    angle = re.search(r'wheel is free at angle = "(.*)"; `', str(fault))
+    turned = swiss.set("bodies.wheel.angle", overlapping)
+    (overlap,) = overlaps(turned)
+    angle = re.search(r'wheel is free at angle = "(.*)"$', cure_of(turned, overlap))
     assert angle and not overlap_faults(swiss.set("bodies.wheel.angle", angle[1]))
 
 
