@@ -149,8 +149,6 @@ def _run(args: argparse.Namespace, held: contextlib.ExitStack) -> int:
             plotted=extras.plots,
             to_the_end=args.to_the_end,
         )
-        if trajectory.stop == Stop.FOREGONE:  # before pictures are drawn
-            say(f"Ended early (--to-the-end continues): {trajectory.stop_message}.")
         if trajectory.stop == Stop.INTERRUPTED and folder.is_dir() and any(folder.iterdir()) and not goes_on:
             kept, folder = folder, interrupted_place(folder)
             goal = dataclasses.replace(goal, folder=folder, replace=False)
@@ -208,6 +206,7 @@ def simulate_with_progress(
     """
     from watchsim.commands.pictures import empty_panels
     from watchsim.simulation.simulate import simulate
+    from watchsim.simulation.state import Stop
     from watchsim.storage.write import real
 
     announce_compile()
@@ -232,6 +231,9 @@ def simulate_with_progress(
             follow=follow,
             to_the_end=to_the_end,
         )
+        if run.stop == Stop.FOREGONE:  # at once, before anything is drawn
+            progress.close()
+            say(f"Ended early (--to-the-end continues): {run.stop_message}.")
     finally:
         lines, panels = meanwhile.end()
         progress.close()
