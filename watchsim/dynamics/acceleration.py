@@ -321,12 +321,14 @@ def _decide_grips(m, bearings, problem, system, out_grip):
         i, row = problem.bearing[p], 2 * m + p
         moves = _row_acceleration(system, rows, row)
         terms = row_terms(system, problem.drag, m, rows, row) + system.inverse[i] * system.dry[i]
-        if abs(moves) > ACCELERATION_ROUNDING * terms:
-            out_grip[i] = FORWARD if moves > 0.0 else BACKWARD
-            system.h[i] -= out_grip[i] * system.dry[i]
-        elif m > 0 and abs(system.force[row]) >= (1.0 - AT_LIMIT) * system.dry[i]:
-            out_grip[i] = BACKWARD if system.force[row] > 0.0 else FORWARD
-            system.h[i] -= out_grip[i] * system.dry[i]
+        limit = abs(system.force[row]) >= (1.0 - AT_LIMIT) * system.dry[i]
+        if not (abs(moves) > ACCELERATION_ROUNDING * terms or (m > 0 and limit)):
+            continue
+        way = (
+            -system.force[row] if limit and system.dry[i] > 0.0 else moves
+        )  # friction is against the motion, also against one that is rounding
+        out_grip[i] = FORWARD if way > 0.0 else BACKWARD
+        system.h[i] -= out_grip[i] * system.dry[i]
     for p in range(problem.last.sliders):
         i = problem.bearing[bearings + p]
         system.h[i] -= out_grip[i] * system.dry[i]

@@ -56,6 +56,7 @@ class ImpactPhases(NamedTuple):
     impulse: Array  # of the compression, then of both phases
     more: Array  # of the expansion
     between: Array  # rates at the start of the expansion, its least impulses included
+    friction: Array  # by contact: coefficient at its slip before the impact
     offset: Array  # by contact: tangential impulse whose slip moves the corner of the law pg1996
 
 
@@ -65,7 +66,7 @@ ImpactPhasesRef = by_reference(ImpactPhases, __name__)
 def impact_phases(room: int, coordinates: int) -> ImpactPhases:
     """For `room` closed contacts and as many bearings as coordinates."""
     rates, impulse, more, between = np.zeros((4, 2 * room + coordinates))
-    return ImpactPhases(np.zeros(coordinates), np.zeros(coordinates), rates, impulse, more, between, np.zeros(room))
+    return ImpactPhases(np.zeros(coordinates), np.zeros(coordinates), rates, impulse, more, between, *np.zeros((2, room)))
 
 
 @kernel
@@ -95,20 +96,22 @@ def interval(law, mu, restitution, normal, tangential):
 
 
 @kernel
-def impact(model, closed, m, restitution, jam_speed, system, problem, phases, out_u):
+def impact(model, closed, m, restitution, speeds, system, problem, phases, out_u):
     """Two-phase impact of the first m closed contacts; `out_u` holds the velocities before and gets those after.
 
-    `restitution[i]` is eps_N of row i. With `jam_speed` > 0 (m/s) contacts that slide while their gap stands still, to that
-    speed, are jammed: the impulses that stop them are found although nothing approaches. Total impulses are left in
-    `phases.impulse`, rates before the impact in `phases.rates`. True if it is solved; the velocities are changed only then.
+    `restitution[i]` is eps_N of row i. `speeds`, m/s: (`jam_speed`, slips up to this are rest). With `jam_speed` > 0 contacts
+    that slide while their gap stands still, to that speed, are jammed: the impulses that stop them are found although nothing
+    approaches. Total impulses are left in `phases.impulse`, rates before the impact in `phases.rates`. True if it is solved;
+    the velocities are changed only then.
     """
+    jam_speed, still = speeds
     for j in range(len(model.coordinates)):
         system.inverse[j] = inverse_mass(model.coordinates[j])
     fill_delassus(closed, m, system.inverse, system.G)
     contact_velocities(closed, m, out_u, phases.rates)
     _drop_rounding(closed, m, out_u, phases.rates)
     bearings = _struck_bearings(model, closed, m, out_u, system, problem, phases)
-    elements, last = _elements(model, closed, m, phases.rates, problem), problem.last
+    elements, last = _elements(model, closed, m, still, problem, phases), problem.last
     sizes, last.coupled = (elements, bearings), 0
     if not last.seized:
         for number in range(LOAD_ROUNDS):
@@ -243,14 +246,16 @@ def _drop_rounding(closed, m, u, out_rates):
 
 
 @kernel
-def _elements(model, closed, m, rates, problem):
+def _elements(model, closed, m, still, problem, phases):
     """Coulomb friction within ± mu Lambda_N for every contact that has any; returns the number of elements.
 
-    mu is that of the slip before the impact.
+    mu is that of the slip before the impact: of rest up to `still` (m/s), where rounding would choose.
     """
     elements = 0
     for i in range(m):
-        problem.drag[i] = friction_bound(law_of(model, closed.ids[i]), rates[2 * i + 1])
+        slip = phases.rates[2 * i + 1]
+        phases.friction[i] = friction_bound(law_of(model, closed.ids[i]), slip if abs(slip) > still else 0.0)
+        problem.drag[i] = phases.friction[i]
         problem.element[i] = -1
         if problem.drag[i] > 0.0:
             problem.element[i] = elements
@@ -364,8 +369,7 @@ def _expand(model, closed, m, restitution, sizes, G, problem, phases):
         phases.more[N], phases.more[T], phases.offset[i] = restitution[i] * normal, 0.0, 0.0
         if e >= 0:
             law = law_of(model, closed.ids[i])
-            mu = friction_bound(law, phases.rates[T])
-            low, width, span, shift, returned = interval(law, mu, restitution[i], normal, tangential)
+            low, width, span, shift, returned = interval(law, phases.friction[i], restitution[i], normal, tangential)
             problem.drag[i], phases.more[T], phases.offset[i] = low, sign[T] * shift, sign[T] * (law.nu * returned)
             add_element(problem, i, e, (width, span, shift))
     for row in range(rows):
@@ -400,14 +404,15 @@ def _expand(model, closed, m, restitution, sizes, G, problem, phases):
 
 
 @kernel
-def plastic_impact(model, closed, m, time, u, system, problem, phases):
+def plastic_impact(model, closed, m, time, still, u, system, problem, phases):
     """Impulses of the compression over a time in which the forces `system.h` act, into `phases.impulse`; True if found.
 
     The compression of the rates that free motion over `time` (s) would lead to (a step of Moreau's scheme at fixed positions).
+    Slips up to `still` (m/s) are rest.
     """
     fill_delassus(closed, m, system.inverse, system.G)
     contact_velocities(closed, m, u, phases.rates)
-    elements = _elements(model, closed, m, phases.rates, problem)
+    elements = _elements(model, closed, m, still, problem, phases)
     gap_accelerations(model, closed, m, system)
     for row in range(2 * m):
         phases.rates[row] += time * system.b[row]

@@ -18,7 +18,15 @@ from watchsim.dynamics.impact import energy_gain, impact, plastic_impact
 from watchsim.dynamics.lcp import Level
 from watchsim.jit import kernel
 from watchsim.simulation.closed_contacts import kinetic_energy
-from watchsim.simulation.modes import count_problems, decide, rate_rounding, replace, standing_bearings, track_peak_speed
+from watchsim.simulation.modes import (
+    count_problems,
+    decide,
+    hold_gaps,
+    rate_rounding,
+    replace,
+    standing_bearings,
+    track_peak_speed,
+)
 from watchsim.simulation.scratch import keep_event
 from watchsim.simulation.state import EventKind
 from watchsim.tolerances import (
@@ -59,7 +67,7 @@ def collide(model, state, island, m, options, jam_speed, scratch, record):
     if jam_speed == 0.0:
         ended = stop_repeated_rebounds(state.returning, state.clock.time, m, options, event, room.restitution)
     for _ in range(1 + m):
-        if not _solve(model, m, jam_speed, work, event.closed, room, state.u, state.counts):
+        if not _solve(model, m, (jam_speed, options.speed_zero), work, event.closed, room, state.u, state.counts):
             copy(room.before, state.u)
             return False
         for row in range(2 * m):
@@ -80,7 +88,7 @@ def collide(model, state, island, m, options, jam_speed, scratch, record):
 
 
 @kernel
-def _solve(model, m, jam_speed, work, closed, room, out_u, out_counts):
+def _solve(model, m, speeds, work, closed, room, out_u, out_counts):
     """One impact with `room.restitution`; again with the smallest restitution, then with none, if it gains energy.
 
     So, too, where its expansion has no solution. False if none is found: one without restitution that gains energy is wrong.
@@ -88,7 +96,7 @@ def _solve(model, m, jam_speed, work, closed, room, out_u, out_counts):
     kinetic, system, phases = kinetic_energy(model, room.before), work.system, work.phases
     for attempt in range(3):
         copy(room.before, out_u)
-        solved = impact(model, closed, m, room.restitution, jam_speed, system, work.problem, phases, out_u)
+        solved = impact(model, closed, m, room.restitution, speeds, system, work.problem, phases, out_u)
         count_problems(work.problem, out_counts)
         if solved:
             gain, terms = energy_gain(2 * m + work.problem.last.bearings, system.G, phases.rates, phases.impulse)
@@ -324,16 +332,18 @@ def pressed_time(model, a, island, m, options, system, problem, event, room):
 
 
 @kernel
-def end_chatter(model, u, m, time, taken, lenience, work, event, room):
-    """Find what ends a chatter that lasts `time` (s): (found?, how many contacts, in `event.rest`, end in force).
+def end_chatter(model, u, m, duration, still, lenience, work, event, room):
+    """Find what ends a chatter: (found?, how many contacts, in `event.rest`, end in force).
 
-    The impulses are left in `room.ending`. P are the impulses of the plastic impact with the rates that free motion over `time`
-    would lead to, lambda the forces of the contacts that P finds in force. What lambda does will be integrated when that time
-    passes; the rest is done now: u += M⁻¹ W (P - lambda time). Not done where that would gain more energy than the impact has
-    just `taken` (J). `work.system` holds h and the inverse masses of the last decision.
+    `duration`: (`time` that it lasts, s, and what the impact has `taken`, J); slips up to `still` (m/s) are rest. The impulses
+    are left in `room.ending`. P are the impulses of the plastic impact with the rates that free motion over `time` would lead
+    to, lambda the forces of the contacts that P finds in force. What lambda does will be integrated when that time passes; the
+    rest is done now: u += M⁻¹ W (P - lambda time). Not done where that would gain more energy than the impact has just taken.
+    `work.system` holds h and the inverse masses of the last decision.
     """
+    time, taken = duration
     closed, rest, ending, system, phases = event.closed, event.rest, room.ending, work.system, work.phases
-    if not plastic_impact(model, closed, m, time, u, system, work.problem, phases):
+    if not plastic_impact(model, closed, m, time, still, u, system, work.problem, phases):
         return False, 0
     r = 0
     for i in range(m):
@@ -375,7 +385,8 @@ def _end_chatter(model, state, island, m, options, scratch, record):
     before = kinetic_energy(model, state.u)
     taken = kinetic_energy(model, room.before) - before
     copy(state.u, room.before)
-    found, r = end_chatter(model, state.u, m, time, taken, state.instant.lenience, work, event, room)
+    terms = (time, taken), options.speed_zero, state.instant.lenience
+    found, r = end_chatter(model, state.u, m, *terms, work, event, room)
     count_problems(work.problem, state.counts)
     if found:
         apply(event.rest, r, room.ending, work.system.inverse, state.u)
@@ -391,5 +402,28 @@ def _end_chatter(model, state, island, m, options, scratch, record):
             state.counts.accumulations += 1
     replace(model, state.q, state.u, m, event)
     driven = drive_through_contacts(model, event.rest, r, room.ending, state.u)
+    _hold_hidden(model, state, island, m, options, scratch)
     state.sums.drive += driven
     state.sums.impacts += before + driven - kinetic_energy(model, state.u)
+
+
+@kernel
+def _hold_hidden(model, state, island, m, options, scratch):
+    """Hold those of the m closed contacts that leave a chatter so slowly that they rise by no more than rounding.
+
+    Gaps are found closed up to `gap_zero` behind where they are: a fall from there would keep the chatter going for ever.
+    """
+    closed, event, r, hidden = scratch.event.closed, scratch.event, 0, False
+    if not _accelerations(model, state, island, m, options, scratch):
+        return
+    for i in range(m):
+        rate = closed.kin[i].gN_dot
+        if rate > event.zero[i]:
+            if not 0.25 * rate * return_time(closed, i, state.a) <= HIDDEN_REBOUND * options.gap_zero:
+                continue
+            hidden = True
+        contact_kinematics(model, closed.ids[i], event.pose, r, event.rest)
+        r += 1
+    if hidden:
+        hold_gaps(model, r, options, scratch.work.system, event, scratch.projection, state.u)
+        replace(model, state.q, state.u, m, event)

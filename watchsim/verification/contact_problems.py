@@ -61,7 +61,7 @@ def _solved(what, model, closed, sizes, number, restitution, work, out):
     m, bearings = sizes
     grip, mode, vector = out
     if what == IMPACT:
-        return _impact(parts, rows, m, restitution, number, room.system, room.problem, room.phases, vector)
+        return _impact(parts, rows, m, restitution, (number, 0.0), room.system, room.problem, room.phases, vector)
     if what == MODES:
         return _decide_modes(parts, rows, m, bearings, number, room.system, room.problem, grip, mode)
     if what == FORCES:
