@@ -324,9 +324,8 @@ def _decide_grips(m, bearings, problem, system, out_grip):
         limit = abs(system.force[row]) >= (1.0 - AT_LIMIT) * system.dry[i]
         if not (abs(moves) > ACCELERATION_ROUNDING * terms or (m > 0 and limit)):
             continue
-        way = (
-            -system.force[row] if limit and system.dry[i] > 0.0 else moves
-        )  # friction is against the motion, also against one that is rounding
+        # Friction is against the motion, also against one that is rounding.
+        way = -system.force[row] if limit and system.dry[i] > 0.0 else moves
         out_grip[i] = FORWARD if way > 0.0 else BACKWARD
         system.h[i] -= out_grip[i] * system.dry[i]
     for p in range(problem.last.sliders):
