@@ -333,7 +333,7 @@ def test_two_contacts_rebound_by_their_laws(seed: int, kind: int) -> None:
         total += expanded(G, rates, first, eps, case.laws)
     case.work.system.inverse[:], after = np.nan, u.copy()
     system, problem, phases = case.work.system, case.work.problem, case.work.phases
-    assert in_python(impact.impact)(case.model, case.closed, M, eps, 0.0, system, problem, phases, after)
+    assert in_python(impact.impact)(case.model, case.closed, M, eps, (0.0, 0.0), system, problem, phases, after)
     assert phases.impulse[: 2 * M] == pytest.approx(total, abs=1e-10)
     assert after == pytest.approx(u + (case.W / mass).T @ total, abs=1e-10)
     assert phases.rates[: 2 * M] == pytest.approx(rates)
@@ -354,7 +354,7 @@ def test_over_a_time_what_forces_would_do_is_stopped_too(seed: int) -> None:
     system, problem, phases = case.work.system, case.work.problem, case.work.phases
     rates = case.W @ (u + time * system.h * system.inverse) + time * case.bars
     system.b[2 * M :] = 5.0
-    assert in_python(impact.plastic_impact)(case.model, case.closed, M, time, u, system, problem, phases)
+    assert in_python(impact.plastic_impact)(case.model, case.closed, M, time, 0.0, u, system, problem, phases)
     assert np.all(system.b[2 * M :] == 5.0)
     assert phases.impulse[: 2 * M] == pytest.approx(compressed(case.G, rates, case.friction), abs=1e-10)
     posed = problem.last

@@ -11,7 +11,7 @@ from hunt.generator.parts import Dice
 
 sys.path.insert(0, str(hunt_path.ROOT / "scripts" / "fuzz"))
 
-from oiled import missed, oiled
+from oiled import missed, motion, oiled
 
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.state import Stop
@@ -19,7 +19,21 @@ from watchsim.simulation.state import Stop
 
 @pytest.mark.parametrize(
     ("seed", "number"),
-    [(23, 416), (23, 433), (23, 472), (23, 489), (29, 428), (29, 81), (29, 891), (37, 805), (37, 79), (37, 428), (37, 1165)],
+    [
+        (23, 416),
+        (23, 433),
+        (23, 472),
+        (23, 489),
+        (29, 428),
+        (29, 81),
+        (29, 891),
+        (37, 805),
+        (37, 79),
+        (37, 428),
+        (37, 1165),
+        (37, 1754),
+        (41, 1670),
+    ],
 )
 def test_what_the_hunt_found(seed: int, number: int) -> None:
     """416: dry friction held the shaft of a loose body in flight, and drove it. 433 to 489: contacts and a bearing at the limit
@@ -27,7 +41,17 @@ def test_what_the_hunt_found(seed: int, number: int) -> None:
     contact towards Painlevé's paradox, and steps became too small before it counted as jammed. 81, 891, 805: a shaft in its
     hole and what its body slides along jam together, though neither does alone. 79: what nothing presses was pressed by next to
     nothing, though no forces go with that. 428: a contact stuck and slid in turn as the load of a bearing followed. 1165: a
-    bearing at the limit of its friction was held below it by contacts some time later."""
+    bearing at the limit of its friction was held below it by contacts some time later. 1754: a box that leans on a wall rocked on in rebounds lower than the width of a
+    closed gap. 1670: on the line of centres no impulses answer an impact."""
     run = simulate(oiled(mechanism(seed, number), Dice(seed + 1000, number)), tolerance=1e-9)
     assert run.stop == Stop.DURATION
     assert missed(run) < 1e-9
+
+
+@pytest.mark.parametrize(("seed", "number"), [(37, 334), (41, 167)])
+def test_no_rounding_chooses(seed: int, number: int) -> None:
+    """334: at a slip of 1e-13 m/s an impact had the friction of sliding, without slip that of rest. 167: a bearing at the limit
+    of its friction began to move by an acceleration of rounding size, against the friction that had just been found."""
+    scene = oiled(mechanism(seed, number), Dice(seed + 1000, number))
+    coarse, fine = (motion(scene, simulate(scene, tolerance=tolerance)) for tolerance in (1e-9, 1e-11))
+    assert abs(coarse - fine).max() < 1e-8

@@ -54,6 +54,7 @@ from watchsim.simulation.modes import (
     release_pulling,
     replace,
     set_rate_zeros,
+    stop_locked,
     track_peak_speed,
 )
 from watchsim.simulation.options import OptionsRef, longest_step
@@ -217,6 +218,10 @@ def resolve(model, state, island, m, options, scratch, record):
         if jammed or approaching(m, event.closed, event.zero):
             jam_speed = options.speed_zero if jammed else 0.0
             if not collide(model, state, island, m, options, jam_speed, scratch, record):
+                if stop_locked(model, state, m, work.system, event, record):
+                    state.counts.lcp_failures -= 1  # there is no solution to be found
+                    replace(model, state.q, state.u, m, event)
+                    continue
                 return Stop.BEARING_JAMS if last.jammed else Stop.LCP_FAILED, 0
             jammed, hit, last.seized = False, not jammed, 0
         else:

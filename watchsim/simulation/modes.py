@@ -290,15 +290,39 @@ def stop_at_dead_centre(model, state, r, solved, system, event, record):
         # What the forces without effect would have to make up for, which they cannot: sigma·w̄.
         if kin.bar_N - kin.bar_T * system.G[2 * i, 2 * i] / system.G[2 * i, 2 * i + 1] >= 0.0:
             continue
-        before = kinetic_energy(model, state.u)
-        for k in range(rest.slots[i]):
-            state.u[rest.coord[i, k]] = 0.0
-        row = keep_event(record, state.clock, state.counts, EventKind.JAM, rest.ids[i], -1, kin.gT_dot)
-        record.events[row].energy_lost = before - kinetic_energy(model, state.u)
-        state.sums.impacts += record.events[row].energy_lost
-        state.counts.jams += 1
+        _stop_both(model, state, rest, i, record)
         found = True
     return found
+
+
+@kernel
+def stop_locked(model, state, m, system, event, record):
+    """Stop what an impact locks on the line of centres, one of the m closed contacts; True if anything.
+
+    Impulses change both rates of the contact alike there. None is found where all that would take the gap rate back leaves a
+    slip whose friction is along with it: the nearer to the line, the larger those are that do.
+    """
+    found, closed = False, event.closed
+    for i in range(m):
+        rate, slip = closed.kin[i].gN_dot, closed.kin[i].gT_dot
+        if not (rate < -event.zero[i] and _locks(model, closed, i, system)):
+            continue
+        if rate - slip * system.G[2 * i, 2 * i] / system.G[2 * i, 2 * i + 1] < 0.0:
+            _stop_both(model, state, closed, i, record)
+            found = True
+    return found
+
+
+@kernel
+def _stop_both(model, state, closed, i, record):
+    """Stop the bodies of contact i; their energy goes to the impacts."""
+    before = kinetic_energy(model, state.u)
+    for k in range(closed.slots[i]):
+        state.u[closed.coord[i, k]] = 0.0
+    row = keep_event(record, state.clock, state.counts, EventKind.JAM, closed.ids[i], -1, closed.kin[i].gT_dot)
+    record.events[row].energy_lost = before - kinetic_energy(model, state.u)
+    state.sums.impacts += record.events[row].energy_lost
+    state.counts.jams += 1
 
 
 @kernel
