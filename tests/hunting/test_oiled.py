@@ -16,33 +16,19 @@ from oiled import missed, motion, oiled
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.state import Stop
 
+FOUND = {23: (416, 433, 472, 489), 29: (428, 81, 891), 37: (805, 79, 428, 1165, 1754), 41: (1670,)}
 
-@pytest.mark.parametrize(
-    ("seed", "number"),
-    [
-        (23, 416),
-        (23, 433),
-        (23, 472),
-        (23, 489),
-        (29, 428),
-        (29, 81),
-        (29, 891),
-        (37, 805),
-        (37, 79),
-        (37, 428),
-        (37, 1165),
-        (37, 1754),
-        (41, 1670),
-    ],
-)
+
+@pytest.mark.parametrize(("seed", "number"), [(seed, number) for seed, numbers in FOUND.items() for number in numbers])
 def test_what_the_hunt_found(seed: int, number: int) -> None:
-    """416: dry friction held the shaft of a loose body in flight, and drove it. 433 to 489: contacts and a bearing at the limit
-    of its friction hold the same body, and their loads were shared anew without end. 428: friction that falls with speed led a
-    contact towards Painlevé's paradox, and steps became too small before it counted as jammed. 81, 891, 805: a shaft in its
-    hole and what its body slides along jam together, though neither does alone. 79: what nothing presses was pressed by next to
-    nothing, though no forces go with that. 428: a contact stuck and slid in turn as the load of a bearing followed. 1165: a
-    bearing at the limit of its friction was held below it by contacts some time later. 1754: a box that leans on a wall rocked on in rebounds lower than the width of a
-    closed gap. 1670: on the line of centres no impulses answer an impact."""
+    """416: dry friction held the shaft of a loose body in flight, and drove it. 433 to 489: contacts and a bearing at the
+    limit of its friction hold the same body, and their loads were shared anew without end. 428: friction that falls with
+    speed led a contact towards Painlevé's paradox, and steps became too small before it counted as jammed. 81, 891, 805: a
+    shaft in its hole and what its body slides along jam together, though neither does alone. 79: what nothing presses was
+    pressed by next to nothing, though no forces go with that. 428: a contact stuck and slid in turn as the load of a
+    bearing followed. 1165: a bearing at the limit of its friction was held below it by contacts some time later. 1754: a
+    box that leans on a wall rocked on in rebounds lower than the width of a closed gap. 1670: on the line of centres no
+    impulses answer an impact."""
     run = simulate(oiled(mechanism(seed, number), Dice(seed + 1000, number)), tolerance=1e-9)
     assert run.stop == Stop.DURATION
     assert missed(run) < 1e-9
