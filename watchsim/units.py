@@ -311,7 +311,7 @@ def _unfitting(value: object, unit: Unit, dimension: Dimension) -> str:
 
 def _example(dimension: Dimension, number: str) -> str:
     # Nobody builds a watch of 4 vph or of 28800 Hz.
-    unit = "Hz" if dimension is FREQUENCY and abs(float(number)) < 1000.0 else dimension.usual[1]
+    unit = "Hz" if dimension.powers == FREQUENCY.powers and abs(float(number)) < 1000.0 else dimension.usual[1]
     return _joined(number, unit)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
+from typing import Any
 
 import ezdxf
 import ezdxf.math
@@ -281,3 +282,53 @@ def test_a_pendulum_drawn_aside_hangs_down_and_beats_by_its_length(tmp_path: Pat
     assert float(guesses["springs.0.rest"].rstrip("°")) == pytest.approx(-3.0, abs=0.01)
     vph = 3600.0 / math.pi * math.sqrt(9.81 / (0.25 + 0.5 * 0.02**2 / 0.25))
     assert float(guesses["springs.0.frequency"].split()[0]) == pytest.approx(vph, abs=0.06)
+
+
+def brocot(path: Path, turned: float) -> Path:
+    """A clock as blocks: a wheel with a "rim", half-round pins on an anchor, and a pendulum hung on it, in a plate."""
+    document = ezdxf.new("R2013", units=ezdxf.units.MM)
+    space, radius, pitch, span, pin = document.modelspace(), 20.0, math.tau / 30, math.radians(51.0), 0.9
+    up = radius / math.cos(span)
+
+    def polar(r: float, angle: float) -> tuple[float, float]:
+        return (r * math.cos(angle), r * math.sin(angle))
+
+    def outline(where: Any, layer: str, points: Any, **more: Any) -> None:
+        where.add_lwpolyline(points, close=True, dxfattribs={"layer": layer}, **more)
+
+    wheel, anchor = document.blocks.new("SCAPEWHEEL"), document.blocks.new("BROCOT_ANCHOR")
+    tooth = ((16.8, 0.0), (radius, 0.0), (radius, 0.015), (17.2, 0.62 * pitch))
+    outline(wheel, "SCAPE_RIM", [polar(r, k * pitch + more) for k in range(30) for r, more in tooth])
+    wheel.add_circle((0, 0), 1.1, dxfattribs={"layer": "SCAPE_BORE"})
+    for angle in (0.5 * math.pi + span, 0.5 * math.pi - span):
+        ends = (polar(radius + 0.35 + pin, angle), polar(radius + 0.35 - pin, angle))
+        outline(anchor, "ANCHOR_PINS", [(*ends[0], 1), (*ends[1], 0)], format="xyb")
+    arms = [(-20, 14), (-14, up - 1), (0, up + 4), (14, up - 1), (20, 14), (12, up - 6), (-12, up - 6)]
+    outline(anchor, "ANCHOR_ARMS", arms)
+    anchor.add_circle((0, up), 1.0, dxfattribs={"layer": "ANCHOR_BORE"})
+    space.add_blockref("SCAPEWHEEL", (60, 40), dxfattribs={"rotation": turned})
+    space.add_blockref("BROCOT_ANCHOR", (60, 40))
+    outline(space, "PLATE", [(0, 0), (120, 0), (120, 100), (0, 100)])
+    outline(space, "PENDULUM_ROD", [(59, 38 + up), (61, 38 + up), (61, up - 200), (59, up - 200)])
+    space.add_circle((60, up - 210), 30, dxfattribs={"layer": "PENDULUM_BOB"})
+    document.saveas(path)
+    return path
+
+
+def test_a_wheel_with_a_rim_is_no_pendulum_and_the_anchor_hangs_on_its_rod(tmp_path: Path) -> None:
+    """Its rim and the pendulum's bob once made one oscillator of wheel and pendulum, beside an anchor with nothing to do."""
+    found = propose([brocot(tmp_path / "clock.dxf", -0.4)])
+    assert [(role.name, role.task, role.teeth) for role in found.roles] == [
+        ("scape_wheel", "wheel", 30),
+        ("pendulum", "oscillator", 0),
+        ("plate", "fixed", 0),
+    ]
+    met = {tuple(side.split("_")[-1] for side in pair) for pair in found.contacts}
+    assert ("RIM", "PINS") in met
+    assert not any("cuts into" in doubt for doubt in found.doubts)
+
+
+def test_pins_drawn_into_the_teeth_are_doubted(tmp_path: Path) -> None:
+    found = propose([brocot(tmp_path / "clock.dxf", -1.2)])
+    (doubt,) = (doubt for doubt in found.doubts if "cuts into" in doubt)
+    assert "ANCHOR_PINS cuts into the teeth of scape_wheel" in doubt

@@ -459,3 +459,11 @@ def test_a_layer_with_points_and_blanks_stands_in_quotes(desk, good):
         "design.lock": "2°",
         'bodies.wheel.adjust."A.1".turn': "1°",
     }
+
+
+@pytest.mark.parametrize(("of", "key", "unit"), [("pin_wheel", "torque", "mN·m"), ("swiss_lever", "torque", "µN·m")])
+def test_a_bare_dimension_gets_an_example_in_the_unit_of_its_design(of: str, key: str, unit: str, tmp_path: Path) -> None:
+    scene = tmp_path / "scene.toml"
+    scene.write_text(f'[design]\nof = "{of}"\n{key} = 20\n', encoding="utf-8")
+    with pytest.raises(SceneError, match=f'Write "20 {unit}"'):
+        load(scene)

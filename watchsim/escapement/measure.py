@@ -169,7 +169,8 @@ def measure(scene: Scene, compiled: Compiled | None = None, few: int | None = No
         banks = _banks(hands, parts, wheel, start)
         first = wheel.lead(start, banks[0]).last if start.lever != banks[0] else start
         if first is None:
-            raise NotMeasured("the wheel runs free as the lever goes to its bank")
+            way = "to its bank" if parts.detached else "aside"
+            raise NotMeasured(f"{parts.wheel} runs free as {parts.lever} is turned {way} by hand")
         roller = _roller(scene, wheel, banks) if len(parts.to_roller) else None
         beats = passages(wheel, banks, first, toothed, roller, few)
     except NotMeasured as reason:

@@ -18,13 +18,14 @@ from watchsim.drawing.findings import Finding
 from watchsim.drawing.material import layer_roles
 from watchsim.geometry.loops import extents
 from watchsim.geometry.solids import section
-from watchsim.mechanism.compile import Compiled
+from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.mechanism.contacts import PairCount, pair_lines, pairs_entry
 from watchsim.mechanism.overlap import cure_of, overlaps
 from watchsim.mechanism.words import force_lines, law_words, length, place, turned
-from watchsim.scene.roles import frequency, keeps_time, loads, oscillators, partners, roles
+from watchsim.scene.roles import frequency, keeps_time, loads, oscillators, partners, pitch, roles
 from watchsim.scene.scene import Body, Scene, Tolerance
 from watchsim.scene.solids import HAIRSPRING, LYING, PLATE, UPRIGHT, Solid, total
+from watchsim.scene.teeth import train
 from watchsim.scene.trains import ON_PIVOT, Weighed, is_still
 from watchsim.tolerances import HANGS_STILL
 from watchsim.units import metric, show, to
@@ -80,6 +81,7 @@ def _named(compiled: Compiled, pair: Any, body: int, names: Sequence[str]) -> st
 #
 # None of it is wrong by itself; all of it is easily overlooked. `watchsim check` lists it, `watchsim run` says it first.
 
+ROUNDING = 1e-9  # relative: of an inertia that is written in decimals
 UNCOUNTED = 0.5  # of the area that counts: with so much more drawn beside it, the mass is hardly where it is said to be
 
 
@@ -87,21 +89,52 @@ def notes(scene: Scene) -> tuple[Finding, ...]:
     """A notice for each, with what to do."""
     return (
         *_massless(scene),
+        *_too_light(scene),
         *_weightless(scene),
         *_by_outline(scene),
         *_by_one_layer(scene),
         *_unused_lift(scene),
         *_at_rest(scene),
+        *_apart(scene),
     )
 
 
 def _massless(scene: Scene) -> Iterator[Finding]:
-    """Gravity turns a pivoted body only if its mass is known; saying nothing must not pass for poise."""
+    """Gravity turns a pivoted body only if its mass is known; saying nothing must not pass for poise.
+
+    What is moved as the scene says feels none, and a driven wheel of equal teeth is poised.
+    """
     weighed = loads(scene.bodies)[1] if any(scene.gravity) else ()
+    wheel = roles(scene).wheel
+    poised = train(scene, wheel) if wheel is not None and pitch(scene, wheel) else ()
     for body, load in zip(scene.bodies, weighed, strict=False):
-        if body.motion == "pivot" and load.mass == 0.0:
+        if body.motion == "pivot" and load.mass == 0.0 and body.prescribed is None and body.name not in poised:
             message = f"{body.name} has no mass, so gravity does not turn it: it counts as poised"
             yield Finding("poised", "notice", message, f"Give mass or solids under [bodies.{body.name}] if it is not.")
+
+
+def _too_light(scene: Scene) -> Iterator[Finding]:
+    """About its pivot a body has at least the inertia of its whole mass in its centre of mass."""
+    for body in scene.bodies:
+        least = body.mass * math.hypot(*body.centre_of_mass) ** 2
+        if body.motion == "pivot" and body.inertia < least * (1.0 - ROUNDING):
+            inertia, most = (show(value, _unit(least, INERTIAS), 5) for value in (body.inertia, least))
+            message = (
+                f"no body has the inertia of {body.name}, {inertia} about its pivot: its mass, "
+                f"{length(math.hypot(*body.centre_of_mass))} beside the pivot, alone makes {most}"
+            )
+            cure = f"Look at mass, inertia and centre_of_mass under [bodies.{body.name}]; inertia is that about the pivot."
+            yield Finding("inertia", "warning", message, cure)
+
+
+def _apart(scene: Scene) -> Iterator[Finding]:
+    """A contact of bodies that never come near each other holds nothing."""
+    compiled = compile_scene(scene)
+    for pair in compiled.model.pairs:
+        if pair.near_start == pair.near_stop and pair.start < pair.stop:
+            one, other = (_named(compiled, pair, body, [body.name for body in scene.bodies]) for body in (pair.a, pair.b))
+            message = f"{one} and {other} never come within reach of each other, at whatever angles: their contact does nothing"
+            yield Finding("apart", "warning", message, "Look at their places with --png, or leave the contact out.")
 
 
 def _weightless(scene: Scene) -> Iterator[Finding]:

@@ -12,9 +12,9 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from watchsim.geometry.primitives import Point
-from watchsim.proposal.facing import Facing
+from watchsim.proposal.facing import OVER, Facing
 from watchsim.proposal.parts import nose_of, toothing
-from watchsim.proposal.pieces import CLICK, DRIVER, LEVER, NONE, OSCILLATOR, SAME, WHEEL, Piece
+from watchsim.proposal.pieces import CLICK, DRIVER, LEVER, NONE, OSCILLATOR, SAME, WHEEL, Piece, ring
 from watchsim.proposal.roles import Role, first_of
 
 
@@ -32,7 +32,7 @@ def doubts(
     if not found and len(moving) > 1:
         found += [f"{role.name} meets nothing that moves or holds it: {_cure(role)}" for role in moving if role.name not in met]
         found += _chain(roles, facings)
-        found += _heights(moving, facings)
+        found += list(_heights(moving, facings)) or _cut_in(moving, facings)
         found += _clicks(moving)
     elif not found and moving and not facings and len(roles) > 1:
         found.append(f"{moving[0].name} is all that moves, and nothing meets it: no pivot was found for the other parts")
@@ -140,6 +140,29 @@ def _heights(moving: Sequence[Role], facings: Sequence[Facing]) -> Iterator[str]
             yield (
                 f"{one.name} and {other.name} lie over each other, and a flat drawing does not show which of their surfaces "
                 f"are at one height; {taken}. Give surfaces that touch layers of their own, such as TEETH, STONES, FORK and PIN"
+            )
+
+
+DEEP = 0.3  # of the smaller area: what shares more with a wheel lies over it
+
+
+def _cut_in(moving: Sequence[Role], facings: Sequence[Facing]) -> Iterator[str]:
+    """What cuts a little into teeth may touch them, and be drawn at an angle that it cannot have."""
+    wheel = first_of(moving, WHEEL)
+    toothed = None if wheel is None else toothing(wheel.part)
+    for other in moving if wheel is not None and toothed is not None else ():
+        met = [one for one in facings if {one.first, one.second} == {wheel, other}]
+        if other.task not in (LEVER, OSCILLATOR, CLICK) or any(one.by_name for one in met):
+            continue
+        teeth = [piece for piece in wheel.part.pieces if piece.turned is toothed]
+        taken = {(layer, facing) for one in met for (_, facing), (role, layer) in (one.sides, one.sides[::-1]) if role is other}
+        pairs = [(p, q) for p in teeth for q in other.part.pieces if (q.layer, p.layer) not in taken]
+        between = ((p, q) for p, q in pairs if ring(q.points, toothed.centre)[0] > toothed.inner)
+        cutting = (q.layer for p, q in between if OVER < p.region.intersection(q.region).area / min(p.area, q.area) < DEEP)
+        for layer in dict.fromkeys(cutting):
+            yield (
+                f"{layer} cuts into the teeth of {wheel.name} as it is drawn, so that it was taken to lie at another height. "
+                "If it touches them, turn one of the two in the drawing until it is clear of them"
             )
 
 

@@ -117,7 +117,7 @@ def take_in(parts: list[Part]) -> None:
         pass
     for part in [part for part in parts if part.centre is None and part.kind == OSCILLATOR]:  # a rod fixed to an anchor
         if not any(other.centre is not None and other.kind == OSCILLATOR for other in parts):
-            body = next((other for other in parts if other.kind == LEVER and other.centre and _meet(part, other)), None)
+            body = next((other for other in parts if other.kind == LEVER and _meet(part, other)), None)
             if body is not None:
                 unite(body, part, "they lie in each other")
                 parts.remove(part)
@@ -251,8 +251,8 @@ def _in_one_drawing(source: Source, pieces: Sequence[Piece], alone: bool) -> lis
     join(parts, _one_block(source), "they are one block")
     join(parts, _one_centre, "they have the same centre")
     join(parts, _one_name, "the names of their layers begin alike")
-    join(parts, _same_kind(parts), "the names of their layers belong to the same kind of part")
     call_wheel(parts)
+    join(parts, _same_kind(parts), "the names of their layers belong to the same kind of part")
     take_in(parts)
     if not _idle(parts, marks):  # no pivot is left for a body that only a feature's name tells of
         take_in_misnamed(parts)

@@ -250,7 +250,7 @@ PASSING = "passing"  # the spring that a detent carries
 
 # Words for a part itself; a layer name that begins with one names its part.
 PARTS = {
-    **dict.fromkeys(("wheel", "escapewheel", "rad", "gangrad", "ankerrad", "hemmungsrad", "roue", "gear", "pinion"), WHEEL),
+    **dict.fromkeys(("wheel", "rad", "gangrad", "steigrad", "ankerrad", "hemmungsrad", "roue", "gear", "pinion"), WHEEL),
     **dict.fromkeys(("ratchet", "sperrrad", "sperrad", "rochet", "star", "stern", "étoile"), WHEEL),
     **dict.fromkeys(("lever", "anker", "anchor", "ancre", "detent", "passing"), LEVER),
     **dict.fromkeys(("click", "pawl", "jumper", "klinke", "sperrklinke", "sperrkegel", "raste", "cliquet", "sautoir"), CLICK),
@@ -264,7 +264,7 @@ PARTS = {
 }
 # Words for a feature, which hint at the part that has it.
 FEATURES = {
-    **dict.fromkeys(("escape", "teeth", "tooth", "zahn", "zaehne", "zähne", "dents"), WHEEL),
+    **dict.fromkeys(("escape", "scape", "teeth", "tooth", "zahn", "zaehne", "zähne", "dents"), WHEEL),
     **dict.fromkeys(("pallet", "pallets", "stone", "stones", "fork", "horn", "horns", "dart", "guard", "arm", "arms"), LEVER),
     **dict.fromkeys(("gabel", "stein", "steine", "fourchette", "palette", "palettes", "levée", "levees"), LEVER),
     **dict.fromkeys(("beak", "nose", "bec", "nase"), CLICK),
@@ -287,9 +287,9 @@ FACING = ((LEAVES, DISCHARGES), (TEETH, STONES), (TEETH, CLICKS), (FORK, PIN), (
 
 
 def tokens(name: str) -> list[str]:
-    """The words of a name in lower case: "ESCAPE_WHEEL_z-1.30" has escape, wheel and z."""
-    split = re.sub(r"(?<=[a-zäöü])(?=[A-ZÄÖÜ])", " ", name)
-    return [word for word in re.split(r"[^a-zäöüéè]+", split.lower()) if word]
+    """The words of a name in lower case: "ESCAPE_WHEEL_z-1.30" has escape, wheel and z, "SCAPEWHEEL" scape and wheel."""
+    split = re.sub(r"(?<=[a-zäöü])(?=[A-ZÄÖÜ])", " ", name).lower()
+    return [word for word in re.split(r"[^a-zäöüéè]+|(?<=[a-z])(?=wheel)", split) if word]
 
 
 def part_of(name: str) -> str | None:

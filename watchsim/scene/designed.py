@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from numbers import Real
 from typing import Any
@@ -115,6 +115,8 @@ def number_of(dimension: Dimension, value: object) -> float:
     number, text = units.split(value)
     if text and units.known_unit(text, kind) == unit:
         return float(number)
+    other = next((one for one in kind.usual if one != dimension.unit), dimension.unit)
+    kind = replace(kind, usual=(other, dimension.unit))  # what a message suggests is of the size that the design has
     return float(f"{units.parse(value, kind) / unit.factor:.15g}")  # the sixteenth place is rounding of the conversion
 
 
