@@ -150,7 +150,9 @@ def _cut_in(moving: Sequence[Role], facings: Sequence[Facing]) -> Iterator[str]:
     """What cuts a little into teeth may touch them, and be drawn at an angle that it cannot have."""
     wheel = first_of(moving, WHEEL)
     toothed = None if wheel is None else toothing(wheel.part)
-    for other in moving if wheel is not None and toothed is not None else ():
+    if wheel is None or toothed is None:
+        return
+    for other in moving:
         met = [one for one in facings if {one.first, one.second} == {wheel, other}]
         if other.task not in (LEVER, OSCILLATOR, CLICK) or any(one.by_name for one in met):
             continue
