@@ -266,3 +266,19 @@ def test_a_rim_over_the_lever_takes_nothing_of_it(tmp_path: Path) -> None:
     # Each has a stone on the layer IMPULSE_STONE, which is parted in two.
     assert all(any(layer.startswith("IMPULSE_STONE") for layer in role.part.layers) for role in (lever, balance))
     assert "RIM" in balance.part.layers
+
+
+def test_drawings_without_units_have_one_and_the_same(tmp_path: Path) -> None:
+    """A wheel of 0.998 and its pawl of 0.31 across: alone the one is likely in millimetres, the other in inches."""
+    star = [(r * math.cos(math.tau * k / 23), r * math.sin(math.tau * k / 23)) for k in range(23) for r in (0.44, 0.5)]
+    shapes = {"spool": (star, (0.0, 0.0, 0.06)), "pawl": ([(0.1, 0.7), (0.2, 0.6), (-0.09, 0.45)], (0.14, 0.6, 0.02))}
+    paths = []
+    for name, (corners, bore) in shapes.items():
+        document = ezdxf.new("R12")
+        document.modelspace().add_polyline2d(corners, close=True, dxfattribs={"layer": name.upper()})
+        document.modelspace().add_circle(bore[:2], bore[2], dxfattribs={"layer": "PIVOT"})
+        paths.append(tmp_path / f"{name}.dxf")
+        document.saveas(paths[-1])
+    found = propose(paths)
+    assert [guess.value for guess in found.guesses if guess.key.endswith(".units")] == ['"mm"', '"mm"']
+    assert not any("side by side" in doubt for doubt in found.doubts)

@@ -28,6 +28,7 @@ from watchsim.geometry.loops import Loop, extents, winding
 from watchsim.geometry.primitives import Arc, Line, Point
 from watchsim.geometry.solids import area, section
 from watchsim.mechanism.overlap import chord_points, material, placed
+from watchsim.units import known_unit
 
 CROSSING = "crossing"  # the code of a finding
 LIKELY = (0.5e-3, 1.0)  # m across: a drawing without units within these is taken to be in millimetres, else in inches
@@ -71,13 +72,24 @@ class Source:
         return frozenset(f.layer for f in errors if f.layer is not None)
 
 
-def read_source(path: Path) -> Source:
-    """The drawing in a file; whatever is wrong with it is among its findings."""
+def read_sources(paths: Sequence[Path]) -> list[Source]:
+    """The drawings in some files. Those that do not say their unit have one and the same: what is likely of the largest."""
+    found = [read_source(path) for path in paths]
+    if len({source.units for source in found} - {None}) < 2:
+        return found
+    largest = max(
+        (one for one in found if one.units), key=lambda one: size_of([one.drawing]) / known_unit(str(one.units)).factor
+    )
+    return [one if one.units in (None, largest.units) else read_source(one.path, largest.units) for one in found]
+
+
+def read_source(path: Path, unit: str | None = None) -> Source:
+    """The drawing in a file, in that unit where it does not say its own; whatever is wrong with it is among its findings."""
     ending = path.suffix.lower().lstrip(".")
     content = read_content(path, ending, None, FIT)
     units = None
     if content.strokes and content.units is None:
-        units = _likely_unit(content)
+        units = unit or _likely_unit(content)
         content = read_content(path, ending, units, FIT)
     section = content.section if any(finding.code == "section-missing" for finding in content.findings) else None
     if section is not None:

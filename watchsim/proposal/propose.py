@@ -18,7 +18,7 @@ from watchsim.mechanism.overlap import overlaps
 from watchsim.proposal.doubts import doubts
 from watchsim.proposal.facing import Facing, facings, named_facings
 from watchsim.proposal.parts import parts_of
-from watchsim.proposal.pieces import CLICK, DRIVER, OSCILLATOR, WHEEL, Piece, Source, is_mark, pieces_of, read_source, size_of
+from watchsim.proposal.pieces import CLICK, DRIVER, OSCILLATOR, WHEEL, Piece, Source, is_mark, pieces_of, read_sources, size_of
 from watchsim.proposal.roles import Role, apart, first_of, lean_of, roles_of
 from watchsim.proposal.start import PIVOT, Amounts, Drawn, Start, amounts_of, drawn, side_by_side, start_of
 from watchsim.scene.errors import SceneError
@@ -275,7 +275,7 @@ def propose(paths: Sequence[Path], way: int = 0) -> Proposal:
 
     NothingToPropose where there is no closed outline, or where outlines have faults that no scene takes.
     """
-    sources = [read_source(path) for path in paths]
+    sources = read_sources(paths)
     pieces, left_out = _pieces(sources)
     parts = parts_of(sources, pieces)
     apart(parts, [source.crowded for source in sources])
