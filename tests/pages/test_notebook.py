@@ -126,7 +126,12 @@ def test_the_player_plays_inside_a_frame(tmp_path: Path) -> None:
     ready = "<script>window.watchsim = true</script>"  # what the browser waits for; the frame has its own
     path.write_text(f"<!DOCTYPE html><html><body>{ready}{watch_run().player()._repr_html_()}</body></html>", encoding="utf-8")
     with opened(path) as page:
-        page.wait_for_timeout(500)
+        # Chromium, on a busy machine, may never let the process of a frame draw, whatever is in it: then it is opened anew.
+        for _ in range(4):
+            page.wait_for_timeout(500)
+            if page.frames[1].evaluate("watchsim.pace().fps"):
+                break
+            page.reload()
         frame = page.frames[1]
         before = frame.evaluate("document.getElementById('scrub').value")
         frame.click("#play")

@@ -292,13 +292,19 @@ def _portrait(axes: Axes, channel: Channel, rows: tuple[Array, Array, Array], ph
     places, speeds = (channel.factor * values[:, channel.columns] for values in (q, u))
     axes.set_xlim(*style.with_room(float(np.nanmin(places)), float(np.nanmax(places)), 0.05, STILL, 1.0))
     style.limits(axes, float(np.nanmin(speeds)), float(np.nanmax(speeds)), flat=STILL, unit=1.0)
-    if np.ptp(places, axis=0).max() < AT_REST * np.ptp(axes.get_xlim()) and np.ptp(speeds) < AT_REST * np.ptp(axes.get_ylim()):
+    still = np.ptp(places, axis=0).max() < AT_REST * np.ptp(axes.get_xlim()) and np.ptp(speeds) < AT_REST * np.ptp(
+        axes.get_ylim()
+    )
+    if still:
         axes.plot(places[-1], speeds[-1], "o", color=colour, markersize=3.0, zorder=4, gid=f"{channel.body.name} at rest")
     axes.ticklabel_format(useOffset=False)
     axes.yaxis.set_offset_position("right")  # opposite the title
     wide = style.width_mm(axes)
     style.spare_labels(axes.xaxis, wide / style.POINT, angle=channel.units["angle"] == ROTATION[0]["angle"])
     style.ticks(axes.yaxis, 5)
+    if still and not channel.legend:  # its place is all that there is to read
+        axes.set_xticks(places[-1])
+        axes.set_yticks([0.0])
     axes.set_xlabel(f"{channel.names['angle']} ({channel.units['angle']})", labelpad=1.5)
     axes.set_ylabel(f"{channel.names['velocity']} ({channel.units['velocity']})")
     axes.yaxis.set_label_coords(-LABEL_AT / wide, 0.5, axes.transAxes)

@@ -29,11 +29,11 @@ FORCE = "#0b5fa5"
 FAULT = "#d0021b"
 PHASES = {  # of a beat; pale, to lie behind curves, and distinct for every kind of colour vision
     "unlock": "#a6cee4",
+    "recoil": "#a6cee4",  # of an anchor's wheel, where a lever unlocks
     "catch-up": "#f5d999",
     "impulse": "#8cd3c0",
     "drop": "#f0d7e5",
     "run to banking": "#eebf99",
-    "recoil": "#a6cee4",  # of an anchor's wheel, where a lever unlocks
 }
 SECOND, ELSE = "#6ab9a8", "#eeeeee"  # an impulse that follows another; any other phase
 ENERGIES = {  # where energy goes, on plots and pages: Okabe and Ito's colours

@@ -56,7 +56,7 @@ def strong(name: str) -> str:
 
 
 def names_in(beats: Iterable[Sequence[Phase]], left_out: Sequence[str] = ("locked",), banded: bool = True) -> dict[str, str]:
-    """The phases that last, by the names of their colours, in their order; each with its words in a key.
+    """The phases that last, by the names of their colours, in the order of a beat; each with its words in a key.
 
     banded  an impulse that follows another has its own colour, and where its words are the same in all beats they say on what
     """
@@ -70,10 +70,8 @@ def names_in(beats: Iterable[Sequence[Phase]], left_out: Sequence[str] = ("locke
             name = AGAIN if banded and phase.name == "impulse" and impulses == 2 else phase.name
             words.setdefault(name, set()).add(f"{phase.name} on {phase.on}" if banded and phase.on else name)
     found = {name: min(said) if len(said) == 1 else name for name, said in words.items()}
-    order = [name for name in found if name != AGAIN]
-    if AGAIN in found:
-        order.insert(order.index("impulse") + 1, AGAIN)
-    return {name: found[name] for name in order}
+    order = [one for name in PHASES for one in ((name, AGAIN) if name == "impulse" else (name,))]
+    return {name: found[name] for name in (*order, *found) if name in found}
 
 
 def beat_name(beat: Beat) -> str:
@@ -261,7 +259,8 @@ def plot_timeline(
     """
     beats_shown = (beats or shown_beats(run, window, rubbed=False))[-MANY:]
     instants = [key_instants(beat) for beat in beats_shown]
-    across = min(ACROSS[width >= style.NARROW], max(map(len, instants)))
+    most = max(map(len, instants))
+    across = -(-most // -(-most // ACROSS[width >= style.NARROW]))  # rows of the same length: the pictures are larger
     around = _box(run, [one.t for own in instants for one in own])
     pushed = _pushed(run, [one for own in instants for one in own])
     largest = max((float(np.hypot(*force.T).max(initial=0.0)) for _, force in pushed), default=0.0)

@@ -23,7 +23,7 @@ from watchsim.simulation.state import EventKind
 from watchsim.simulation.trajectory import Array, Trajectory
 from watchsim.storage.columns import rows_where
 
-LEFT, RIGHT, KEY, TALL, BETWEEN, FOOT = 13.0, 3.0, 5.0, 24.0, 3.0, 7.0  # mm
+LEFT, RIGHT, KEY, TALL, FOOT = 13.0, 3.0, 5.0, 24.0, 7.0  # mm
 RUNG_OUT = 6e-3  # s, after which nothing of a noise is seen
 FAINT = 0.02  # of the loudest: softer ones have no name
 NAMED = 3  # rows of names above a panel
@@ -51,15 +51,22 @@ def plot_sound(
     if loudest <= 0.0:
         raise ValueError("nothing sounds there, or no impacts were kept")
     names = names_in(cycle.phases)
-    top, over = style.HEADING + KEY * bool(names), NAMED * LINE + 1.0
-    made = style.figure(width, top + len(spans) * (over + TALL + BETWEEN) + FOOT, ax=ax)
+    clocks, wide = [clock(span) for span in spans], width - LEFT - RIGHT
+    labels = []
+    rung = [(times, np.sqrt(np.maximum(energies, 0.0) / loudest)) for times, energies in heard]
+    for span, time, (times, loud) in zip(spans, clocks, rung, strict=True):
+        low, high = map(time.at, span)
+        shown = times >= span[0]
+        labels.append(_rows(wide * (time.at(times[shown]) - low) / (high - low), loud[shown], _met(run, times[shown]), wide))
+    rows = 1 + max((row for own in labels for row, *_ in own), default=0)
+    top, over = style.HEADING + KEY * bool(names), rows * LINE + 1.0
+    made = style.figure(width, top + len(spans) * (over + TALL + FOOT), ax=ax)
     style.heading(made, run.scene.title, "Sound of the impacts, each named by what met what")
     if names:
         name_key(made, names, style.HEADING)
-    for k, (span, (times, energies)) in enumerate(zip(spans, heard, strict=True)):
-        axes = style.panel(made, LEFT, top + over + k * (over + TALL + BETWEEN), width - LEFT - RIGHT, TALL)
+    for k, (span, time, (times, loud)) in enumerate(zip(spans, clocks, rung, strict=True)):
+        axes = style.panel(made, LEFT, top + over + k * (over + TALL + FOOT), wide, TALL)
         style.dress(axes, "x")
-        time, loud = clock(span), np.sqrt(np.maximum(energies, 0.0) / loudest)
         t, wave = _wave(times, loud, span)
         axes.plot(*reduced(time.at(t), wave), linewidth=style.THIN, color=style.INK, zorder=3, gid=f"sound {k}")
         axes.set_xlim(*map(time.at, span))
@@ -67,8 +74,7 @@ def plot_sound(
         for beat in cycle.phases:
             if beat[-1].end > span[0] and beat[0].start < span[1]:
                 shade(axes, beat, time.base, time.factor)
-        shown = times >= span[0]
-        _name(axes, time.at(times[shown]), loud[shown], _met(run, times[shown]))
+        _name(axes, labels[k], wide)
         axes.set_ylabel("relative", labelpad=1.5)
         axes.set_xlabel(time.label, labelpad=1.5)
         style.ticks(axes.yaxis, 4)
@@ -98,30 +104,36 @@ def _met(run: Trajectory, times: Array) -> list[str]:
     return found
 
 
-def _name(axes: Axes, x: Array, loud: Array, words: Sequence[str]) -> None:
-    """Names above a panel, the loudest first, as many as fit; no name over another, and no line through one."""
-    low, high = axes.get_xlim()
-    wide, tall = style.width_mm(axes), style.height_mm(axes)
+Label = tuple[int, float, float, float, str]  # row, from, to, and where the line is, mm; words
+
+
+def _rows(places: Array, loud: Array, words: Sequence[str], wide: float) -> list[Label]:
+    """Names above a panel, the loudest first, as many as fit; no name over another, and no line through one. All in mm."""
     letter = style.LETTER * style.SMALL * style.POINT
-    taken: list[tuple[int, float, float, float]] = []  # row, from, to, and where the line is, mm
+    taken: list[Label] = []
     for k in np.argsort(-loud, kind="stable").tolist():
         if loud[k] < FAINT:
             break
-        at, long = wide * (float(x[k]) - low) / (high - low), letter * len(words[k])
+        at, long = float(places[k]), letter * len(words[k])
         begin = min(max(at - 1.0, 0.0), wide - long)
         row = next((row for row in range(NAMED) if _fits(row, begin, begin + long, at, taken)), None)
-        if row is None:
-            continue
-        taken.append((row, begin, begin + long, at))
+        if row is not None:
+            taken.append((row, begin, begin + long, at, words[k]))
+    return taken
+
+
+def _name(axes: Axes, labels: Sequence[Label], wide: float) -> None:
+    tall = style.height_mm(axes)
+    for row, begin, _, at, words in labels:
         height = 1.0 + (1.0 + row * LINE) / tall
-        axes.text(begin / wide, height, words[k], transform=axes.transAxes, fontsize=style.SMALL, va="bottom", color=style.INK)
+        style.words(axes, begin / wide, height, words, va="bottom")
         axes.plot(
             [at / wide] * 2, [1.0, height], transform=axes.transAxes, color=style.INK, linewidth=style.HAIR, clip_on=False
         )
 
 
-def _fits(row: int, begin: float, end: float, at: float, taken: Sequence[tuple[int, float, float, float]]) -> bool:
-    for other, start, stop, line in taken:
+def _fits(row: int, begin: float, end: float, at: float, taken: Sequence[Label]) -> bool:
+    for other, start, stop, line, _ in taken:
         if other == row and begin < stop + GAP and end > start - GAP:
             return False
         if other > row and begin - GAP < line < end + GAP:

@@ -30,6 +30,7 @@ TALL, FOOT = 0.95, 31.0  # of a panel's width; mm, of title, names and scale
 DECADES = 1e3  # below the most: less counts as least
 THICK, POINTS = 3.2, 26.0  # pt, and pt² of a corner
 ROOM = 0.25  # of what wears, around it
+LEAST = 1e-6  # of the most: less is rounding, as of a stop that is only pressed
 LEAST_SIDE = 0.02  # of the body's outlines: narrower, a corner alone would not show what it is the corner of
 MM = 1e3
 
@@ -51,17 +52,18 @@ def plot_wear(
     across = max(min(3, int(width / WIDE), len(groups)), 1)
     norm, rows = LogNorm(most / DECADES, most), -(-len(groups) // across)
     made = style.figure(width, TALL * min(width / across, 0.4 * style.FULL) * rows + FOOT, layout="constrained", ax=ax)
-    style.heading(made, f"{run.scene.title}: wear", "What slides under load, along the outlines (mm); rings: at corners")
+    style.heading(made, run.scene.title, "Wear along outlines that slide under load (mm); rings: at corners")
     engine = made.get_layout_engine()
     if isinstance(engine, ConstrainedLayoutEngine):
-        engine.set(rect=(0.0, 0.0, 1.0, 1.0 - (style.HEADING + 2.0) / style.size_mm(made)[1]))
+        edge = style.EDGE / style.size_mm(made)[0]
+        engine.set(rect=(edge, 0.0, 1.0 - 2.0 * edge, 1.0 - (style.HEADING + 2.0) / style.size_mm(made)[1]))
     panels = made.subplots(rows, across, squeeze=False)
     for axes, (name, sides) in zip(panels.flat, groups.items(), strict=False):
         _panel(axes, name, sides, (found, compiled, cells), norm)
     for axes in list(panels.flat)[len(groups) :]:
         axes.set_visible(False)
     scale = LineCollection([], cmap=style.MAP, norm=norm)
-    bar = made.colorbar(scale, ax=panels, location="bottom", shrink=0.6, aspect=50, pad=0.02)
+    bar = made.colorbar(scale, ax=panels, location="bottom", shrink=0.6, aspect=50, pad=0.04)
     bar.ax.tick_params(labelsize=style.TICK, colors=INK)
     bar.set_label("load × sliding distance in a year, N·m per mm of outline", fontsize=style.LABEL, color=INK)
     return made
@@ -75,7 +77,8 @@ def _groups(found: Wear) -> dict[str, list[int]]:
     index = {key: sum(float(found.along[side].sum()) for side in sides) for key, sides in sums.items()}
     teeth = [key for key in index if key[1].startswith(TOOTH)]
     left_out = set(teeth) - {max(teeth, key=index.__getitem__)} if teeth else set()
-    ranked = sorted((key for key in index if key not in left_out), key=lambda key: -index[key])
+    least = LEAST * max(index.values(), default=0.0)
+    ranked = sorted((key for key in index if key not in left_out and index[key] >= least), key=lambda key: -index[key])
     named = {key: key[1].lower() if key[1].isupper() else key[1] for key in ranked}  # layers in capitals are words here
     return {spaced(f"{key[0]}, {named[key]}" if key[0] != key[1] else key[0]): sums[key] for key in ranked[:MOST]}
 
@@ -120,7 +123,8 @@ def _panel(axes: Any, name: str, sides: list[int], what: tuple[Wear, Compiled, d
     words = f"{metric(taken, 'N·m', 3)} a year"
     if corners:
         there = found.in_a_year(sum(float(found.along[side].sum()) for side in corners)) / taken
-        words += f", {100.0 * there:.0f} % at corners"
+        line = "\n" if style.size_mm(axes.figure)[0] < style.NARROW else " "
+        words += f",{line}{100.0 * there:.0f} % at corners"
     axes.set_xlabel(words, fontsize=style.SMALL, color=INK)
     style.ticks(axes.xaxis, 3)
     style.ticks(axes.yaxis, 3)

@@ -17,5 +17,8 @@ const upTo = (values, x) => {
   return low;
 };
 const clamp = (x, low, high) => Math.min(Math.max(x, low), high);
+// Words of an element, and its attributes, touched only where they change: what is touched is laid out and painted anew.
+const write = (element, text) => { if (element.textContent !== text) element.textContent = text; };
+const put = (element, name, value) => { if (element.getAttribute(name) !== value) element.setAttribute(name, value); };
 // The name of a body as a label has it.
 const spaced = (name) => name.replaceAll("_", " ");

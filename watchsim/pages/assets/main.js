@@ -55,10 +55,9 @@ const drawTrack = () => {
 // The words beside the picture.
 let shownAt = "", announced = "";
 const words = () => {
-  $("time").textContent = timeText(player.t);
-  const rate = clock.rate(player.t);
-  const pace = speedText(rate);
-  $("pace").textContent = pace.startsWith("1/") ? `${pace} of true speed` : pace;
+  const time = timeText(player.t), pace = speedText(clock.rate(player.t));
+  write($("time"), time);
+  write($("pace"), pace.startsWith("1/") ? `${pace} of true speed` : pace);
   const phase = player.phase(), line = `${phase}|${player.note}`;
   if (line !== shownAt) {
     shownAt = line;
@@ -67,21 +66,21 @@ const words = () => {
     $("said").replaceChildren(...(phase ? [strong, document.createElement("br")] : []), ...(player.note && player.note !== phase ? [note] : []));
   }
   if (!player.playing) {
-    const spoken = [timeText(player.t), phase, player.note === phase ? "" : player.note].filter(Boolean).join(", ");
+    const spoken = [time, phase, player.note === phase ? "" : player.note].filter(Boolean).join(", ");
     if (spoken !== announced) { announced = spoken; $("now").textContent = spoken; }
   }
   $("scrub").value = String(Math.round((10000 * (player.t - player.start)) / span));
-  $("scrub").setAttribute("aria-valuetext", timeText(player.t));
-  $("play").setAttribute("aria-label", player.playing ? "Pause" : "Play");
-  $("sign").setAttribute("d", player.playing ? "M4 3h4v14H4zM12 3h4v14h-4z" : "M5 3v14l12-7z");
+  put($("scrub"), "aria-valuetext", time);
+  put($("play"), "aria-label", player.playing ? "Pause" : "Play");
+  put($("sign"), "d", player.playing ? "M4 3h4v14H4zM12 3h4v14h-4z" : "M5 3v14l12-7z");
   $("speed").value = String(player.speedIndex);
-  for (const [id, on] of [["space", solids.on], ["label", names.on], ["adapt", player.adaptive], ["touch", player.points], ["push", player.arrows], ["tick", sound.on]]) $(id).setAttribute("aria-pressed", String(on));
+  for (const [id, on] of [["space", solids.on], ["label", names.on], ["adapt", player.adaptive], ["touch", player.points], ["push", player.arrows], ["tick", sound.on]]) put($(id), "aria-pressed", String(on));
   const followed = player.chosen >= 0 && view.anchor !== null;
   $("release").hidden = !followed;
-  if (followed) $("release").textContent = `Following ${spaced(data.bodies[player.chosen].name)} ✕`;
+  if (followed) write($("release"), `Following ${spaced(data.bodies[player.chosen].name)} ✕`);
   for (const chip of chips) {
-    chip.button.setAttribute("aria-pressed", String(player.faded.has(chip.b)));
-    chip.value.textContent = chip.read ? chip.read(player.t) : "";
+    put(chip.button, "aria-pressed", String(player.faded.has(chip.b)));
+    write(chip.value, chip.read ? chip.read(player.t) : "");
   }
 };
 
@@ -172,6 +171,8 @@ const resize = () => {
 };
 
 let last = 0, trackKey = "", changed = 0, coarse = false, cursor; // ms of the last frame in which something was new; was it drawn as one of many?
+let told = 0; // ms of the last frame that wrote numbers
+const READ = 50; // ms between numbers while playing: nobody reads faster, and to set letters takes as long as to draw
 const STILL = 250; // ms without news after which the solids are drawn as finely as they can be
 const frame = (now) => {
   const seconds = Math.min((now - last) / 1000, 0.1);
@@ -187,13 +188,13 @@ const frame = (now) => {
     const begun = performance.now();
     if (solids.on && moving && coarse) solids.pace.frame(now - changed, drawn);
     changed = now; coarse = solids.on && moving;
-    player.draw(ctx, look, moving);
-    words();
-    plots.draw(player.t, look);
-    strip.draw(player.t, look, plots.range);
-    drawn = performance.now() - begun;
-    const key = `${plots.range}|${look.dark}|${$("track").clientWidth}|${window.devicePixelRatio}`;
+    const key = `${plots.range}|${look.dark}|${$("track").clientWidth}|${window.devicePixelRatio}`, due = !player.playing || now - told >= READ;
     if (key !== trackKey) { trackKey = key; drawTrack(); }
+    player.draw(ctx, look, moving);
+    strip.draw(player.t, look, plots.range);
+    plots.draw(player.t, look, due);
+    if (due) { told = now; words(); } // last: sizes are read above, before the page is laid out anew
+    drawn = performance.now() - begun;
   }
   requestAnimationFrame(frame);
 };

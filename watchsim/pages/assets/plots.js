@@ -31,7 +31,8 @@ class Plots {
       field.setAttribute("role", "img");
       field.setAttribute("aria-label", `${plot.title} of ${spaced(body.name)} over time`);
       this.host.append(box);
-      const panel = { ...plot, field, name, read, fresh: false, shown: [0, 1] };
+      const panel = { ...plot, field, name, fresh: false, shown: [0, 1] };
+      panel.values = panel.lines.map(() => { const value = document.createElement("span"); read.append(value); return value; });
       panel.chart = new uPlot(this.options(panel), [[], ...plot.lines.map(() => [])], field);
       // A dot of each line at the cursor: between the points of a curve, too.
       panel.dots = panel.lines.map(() => { const dot = document.createElement("i"); dot.className = "dot"; panel.chart.over.append(dot); return dot; });
@@ -119,11 +120,13 @@ class Plots {
     ctx.restore();
   }
 
-  draw(t, look) {
+  // For the instant t; without `told` the numbers beside the curves stay. All sizes are read before anything is written.
+  draw(t, look, told = true) {
     this.look = look;
-    for (const panel of this.panels) {
-      const { chart, field } = panel, width = field.clientWidth, height = field.clientHeight;
-      if (!width) continue;
+    const sizes = this.panels.map(({ field }) => [field.clientWidth, field.clientHeight]);
+    this.panels.forEach((panel, p) => {
+      const { chart } = panel, [width, height] = sizes[p];
+      if (!width) return;
       if (chart.width !== width || chart.height !== height) { chart.setSize({ width, height }); panel.fresh = false; }
       if (!panel.fresh) this.fill(panel);
       const [from, to] = this.range;
@@ -135,13 +138,12 @@ class Plots {
         dot.style.transform = `translate(${left}px, ${(1 - (line.value(t) / panel.factor - panel.limits[0]) / (panel.limits[1] - panel.limits[0])) * (height - FOOT - SIDES[0])}px)`;
         dot.hidden = t < from || t > to;
       });
-      panel.read.replaceChildren(...panel.lines.map((line) => {
-        const value = line.value(t), span = document.createElement("span");
-        span.textContent = `${line.name ? `${line.name} ` : ""}${panel.metric ? metric(Math.abs(value) < 1e-6 * panel.size ? 0 : value, panel.unit) : `${minus(value.toFixed(panel.digits))} ${panel.unit}`.replace(" °", "°")}`;
+      if (told) panel.values.forEach((span, k) => {
+        const line = panel.lines[k], value = line.value(t);
+        write(span, `${line.name ? `${line.name} ` : ""}${panel.metric ? metric(Math.abs(value) < 1e-6 * panel.size ? 0 : value, panel.unit) : `${minus(value.toFixed(panel.digits))} ${panel.unit}`.replace(" °", "°")}`);
         span.style.color = panel.lines.length > 1 ? look[line.colour] : "";
-        return span;
-      }));
-    }
+      });
+    });
   }
 
   // The largest size of a plot's curves in all of the window.

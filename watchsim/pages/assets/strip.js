@@ -10,8 +10,10 @@ class Strip {
     this.named = data.events.map(([, words]) => words.split(": ")[0]);
     this.box = document.createElement("div"); this.box.className = "plot";
     const head = document.createElement("p"), name = document.createElement("b");
-    this.read = document.createElement("span"); this.canvas = document.createElement("canvas");
-    name.textContent = "Sound (relative)"; head.append(name, this.read); this.box.append(head, this.canvas);
+    this.read = document.createElement("span"); this.canvas = document.createElement("canvas"); this.cursor = document.createElement("i");
+    const field = document.createElement("div");
+    name.textContent = "Sound (relative)"; head.append(name, this.read); field.append(this.canvas, this.cursor); this.box.append(head, field);
+    field.className = "noises"; this.cursor.className = "cursor";
     this.canvas.className = "strip"; this.canvas.setAttribute("role", "img"); this.canvas.setAttribute("aria-label", "Noises over time");
     this.canvas.addEventListener("pointerdown", (event) => { const box = this.canvas.getBoundingClientRect(); seek(this.range[0] + clamp((event.clientX - box.left - AXIS) / (box.width - AXIS - SIDES[1]), 0, 1) * (this.range[1] - this.range[0])); });
     if (data.sound.note) { const note = document.createElement("p"); note.className = "note"; note.textContent = data.sound.note; this.box.append(note); }
@@ -32,12 +34,22 @@ class Strip {
     return sum;
   }
 
+  // For the instant t: the noises where their stretch, their size or the colours are new, else the cursor only.
   draw(t, look, range) {
     this.range = range;
-    const { canvas } = this, ratio = window.devicePixelRatio || 1, width = canvas.clientWidth, height = canvas.clientHeight, ctx = canvas.getContext("2d");
+    const { canvas, cursor } = this, [from, to] = range, ratio = window.devicePixelRatio || 1, width = canvas.clientWidth, height = canvas.clientHeight, { t: times } = this.sound, last = upTo(times, t) - 1;
     if (!width || this.box.hidden) return;
+    const shown = [look, from, to, ratio, width, height];
+    if (!this.shown || shown.some((one, k) => one !== this.shown[k])) { this.shown = shown; this.noises(look, range, ratio, width, height); }
+    cursor.hidden = t < from || t > to;
+    cursor.style.transform = `translateX(${AXIS + ((t - from) / (to - from)) * (width - AXIS - SIDES[1])}px)`;
+    write(this.read, last >= 0 && t - times[last] < RUNG_OUT ? this.name(times[last]) : "");
+  }
+
+  noises(look, [from, to], ratio, width, height) {
+    const { canvas } = this, ctx = canvas.getContext("2d");
     if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) { canvas.width = Math.round(width * ratio); canvas.height = Math.round(height * ratio); }
-    const [from, to] = range, left = AXIS, wide = width - AXIS - SIDES[1], x = (time) => left + ((time - from) / (to - from)) * wide, step = (to - from) / wide;
+    const left = AXIS, wide = width - AXIS - SIDES[1], x = (time) => left + ((time - from) / (to - from)) * wide, step = (to - from) / wide;
     const top = to - from < NAMED ? 15 * NAMES + 4 : 4, middle = 0.5 * (top + height - 4), half = 0.5 * (height - 4 - top), waves = step < 5e-5;
     ctx.setTransform(ratio, 0, 0, ratio, 0, 0);
     ctx.clearRect(0, 0, width, height);
@@ -57,9 +69,7 @@ class Strip {
     }
     ctx.stroke();
     if (to - from < NAMED) this.names(ctx, look, x, from, to, left + wide, top, middle - half);
-    if (t >= from && t <= to) { ctx.strokeStyle = look.cursor; ctx.lineWidth = 1.5; ctx.beginPath(); ctx.moveTo(x(t), top); ctx.lineTo(x(t), height); ctx.stroke(); }
-    const last = upTo(times, t) - 1;
-    this.read.textContent = last >= 0 && t - times[last] < RUNG_OUT ? this.name(times[last]) : "";
+    this.cursor.style.top = `${top}px`;
   }
 
   // The loudest first, as many as fit beside each other in the rows above.
