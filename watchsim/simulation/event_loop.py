@@ -366,13 +366,14 @@ def _smooth_step(model, cells, state, options, end_time, scratch, record):
         if not known:
             return Stop.CELL_UNKNOWN, False
         made, smallest = coupled_step(model, state, options, longest, soonest, scratch.smooth)
-        if not made and not scratch.smooth.held.jammed:
-            return Stop.STEP_TOO_SMALL, False
         if not made:
-            # A bearing at the limit of its friction that contacts hold as well may be held below it from here on: decide anew.
-            jams = state.clock.time - state.clock.event <= SAME_INSTANT * options.accumulation_time
+            # A bearing at the limit of its friction that contacts hold as well may be held below it from here on, and one whose
+            # load grows without bound seizes: decide anew.
+            jammed = scratch.smooth.held.jammed
+            if state.clock.time - state.clock.event <= SAME_INSTANT * options.accumulation_time or len(model.bearings) == 0:
+                return Stop.BEARING_JAMS if jammed else Stop.STEP_TOO_SMALL, False
             state.instant.touched, state.instant.struck = NO_CONTACT, 0
-            return Stop.BEARING_JAMS if jams else Stop.RUNNING, True
+            return Stop.RUNNING, True
         leave, code = first_leave(model, state.regime, options, smallest, scratch.smooth, state.counts)
     step = scratch.step
     length = step.span.length

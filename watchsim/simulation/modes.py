@@ -7,6 +7,7 @@ recurrence of modes after that (docs/theory/method.md 2.6, 3.5).
 
 from __future__ import annotations
 
+import math
 from enum import IntEnum
 
 from watchsim.contact.gaps import BACKWARD, FORWARD, OPEN, STICK, gap_acceleration, place
@@ -31,6 +32,7 @@ from watchsim.tolerances import (
     LENIENCE_STEP,
     LOAD_ROUGH,
     MOST_LENIENT,
+    PAINLEVE,
     RATE_FLOOR,
     RATE_ROUNDING,
     TILT_ROUNDING,
@@ -94,6 +96,7 @@ def decide(model, state, island, m, options, system, problem, event, out_grip):
         press_contacts(model, event.rest, r, system.force, system)
         changed = rub(model, out_grip, system)
         if _hold(r, bearings, out_grip, system, problem) and has_settled(changed, number):
+            problem.last.jammed = 1 if _seizes(model, event.rest, r, out_grip, system) else 0
             return r, True
     return r, _decide_coupled(model, state, island, r, options, system, problem, event, out_grip)
 
@@ -118,9 +121,34 @@ def _decide_coupled(model, state, island, r, options, system, problem, event, ou
             if not solved:
                 break
             if has_settled(turn_to_loads(r, bearings + last.sliders, system.force, problem), number):
-                last.coupled, last.jammed, last.sliders = 0, 0, 0
+                last.coupled, last.sliders = 0, 0
+                last.jammed = 1 if _seizes(model, rest, r, out_grip, system) else 0
                 return True
     last.coupled, last.sliders = 0, 0
+    return False
+
+
+@kernel
+def _seizes(model, rest, r, grip, system):
+    """True if the force of a contact is what the friction that it makes in bearings makes of next to nothing (`PAINLEVE`).
+
+    It grows without bound as it comes to pass a pivot at friction times radius, where none goes with its load any more.
+    """
+    for i in range(r):
+        force, presses = system.force[2 * i : 2 * i + 2], system.force[2 * i] * system.G[2 * i, 2 * i]
+        terms, rubs = abs(rest.kin[i].bar_N), 0.0
+        for k in range(rest.slots[i]):
+            j, drag, own = rest.coord[i, k], 0.0, 0.0
+            if grip[j] == FORWARD or grip[j] == BACKWARD:
+                drag = grip[j] * system.dry[j]
+                for p in range(len(model.bearings)):
+                    if model.bearings[p].coordinate == j:
+                        own = grip[j] * model.bearings[p].grip * math.sqrt(force[0] * force[0] + force[1] * force[1])
+            share = abs(rest.w_N[i, k] * system.inverse[j])
+            terms += share * (abs(system.h[j] + drag) + abs(drag - own))
+            rubs += share * abs(own)
+        if PAINLEVE * presses > terms and 2.0 * rubs > presses:
+            return True
     return False
 
 
