@@ -28,8 +28,8 @@ def test_what_the_hunt_found(seed: int, number: int) -> None:
     pressed by next to nothing, though no forces go with that. 428: a contact stuck and slid in turn as the load of a
     bearing followed. 1165: a bearing at the limit of its friction was held below it by contacts some time later. 1754: a
     box that leans on a wall rocked on in rebounds lower than the width of a closed gap. 1670: on the line of centres no
-    impulses answer an impact. 394:
-    a force came to pass its pivot at friction times radius, and steps became too small before the bearing seized."""
+    impulses answer an impact. 394: a force came to pass its pivot at friction times radius, and steps became too small
+    before the bearing seized."""
     run = simulate(oiled(mechanism(seed, number), Dice(seed + 1000, number)), tolerance=1e-9)
     assert run.stop == Stop.DURATION
     assert missed(run) < 1e-9
