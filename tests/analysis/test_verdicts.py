@@ -174,6 +174,8 @@ def test_a_wheel_that_the_balance_drives_back_runs_backwards():
     back = replace(run, q=run.q * np.array([1.0, 1.0, -1.0]))
     found = verdict(back)
     assert found.name == "backwards" and "against its drive of 1 µN·m" in found.message
+    idle = replace(back.scene, torques=tuple(replace(one, value=0.0) for one in back.scene.torques))
+    assert verdict(replace(run, scene=idle)).message.endswith("and nothing drives it")
 
 
 def test_the_wheel_is_the_body_whose_lever_meets_the_balance():

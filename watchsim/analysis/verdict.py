@@ -37,7 +37,7 @@ from watchsim.analysis.verdict_kinds import (
     when,
 )
 from watchsim.analysis.watch import Arms, Face, Watch, arms, arms_at, at_lever, face, in_force, unlocked, watch_of
-from watchsim.scene.roles import keeps_time, swings, timekeeper
+from watchsim.scene.roles import is_driven, keeps_time, swings, timekeeper
 from watchsim.simulation.knock_tally import ANGLE, CONTACT, FIRST, LAST, PLACE, TOGETHER
 from watchsim.simulation.state import EventKind
 from watchsim.simulation.tally import sums_of
@@ -139,7 +139,7 @@ def _against_drive(watch: Watch) -> Verdict | None:
         return None
     drive = watch.drive(end)
     words = f"{when(start)}  the watch runs backwards: since then {watch.wheel} has turned by {np.degrees(first - last):.3g}° "
-    words += f"against its drive of {torque_text(drive)}"
+    words += f"against its drive of {torque_text(drive)}" if is_driven(watch.run.scene) else "and nothing drives it"
     return Verdict(BACKWARDS, words, start, watch.wheel, torque=drive)
 
 
