@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 import watchsim as ws
+from watchsim.simulation.foregone import _after
 from watchsim.simulation.state import Stop
 
 
@@ -38,3 +41,10 @@ def test_what_ticks_runs_to_its_end_bit_by_bit(profile: str) -> None:
     assert short.stop == usual.stop == Stop.DURATION
     assert (short.end_q == usual.end_q).all()
     assert len(short.events) == len(usual.events)
+
+
+@given(st.floats(1e-4, 10.0), st.integers(1, 10_000))
+def test_the_next_look_is_later(spacing: float, number: int) -> None:
+    """A look at a time that rounding had put before its own multiple of the period was due again at that very time: a pin-wheel
+    clock stood still for ever at its fifth swing."""
+    assert (number + 0.5) * spacing < _after(number * spacing, spacing) < (number + 1.5) * spacing

@@ -5,6 +5,7 @@ Looked at between slices, at times that depend on nothing but the scene, so that
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -18,7 +19,13 @@ from watchsim.units import rounded
 PERIODS = 4  # nominal ones, from look to look at what stands; a wheel that races is looked at in each of them
 RACES = 50.0  # times as many teeth as the oscillator could let go in that time,
 IN_A_ROW = 2  # in so many periods: nothing will lock the wheel again
+ON_TIME = 1e-9  # of the spacing: so near to a look is at it
 LOOKS = 3  # in a row without a passage through rest and without a tooth: nothing will unlock the wheel again
+
+
+def _after(time: float, spacing: float) -> float:
+    """The next multiple of a spacing, s: never `time` itself, which may be one that rounding has put before it."""
+    return (math.floor(time / spacing + ON_TIME) + 1.0) * spacing
 
 
 class Foregone:
@@ -46,10 +53,10 @@ class Foregone:
         """
         if time < self.next:
             return False
-        self.next = (time // self.period + 1.0) * self.period
+        self.next = _after(time, self.period)
         q = self._compiled.relative(coordinates[None])[0]
         if not self._races(time, q) and time >= self._standing:
-            self._standing = (time // (PERIODS * self.period) + 1.0) * PERIODS * self.period
+            self._standing = _after(time, PERIODS * self.period)
             self._stands(time, q, passed)
         return bool(self.words)
 
