@@ -169,3 +169,10 @@ def test_what_is_no_plain_number_is_called_so(value: object) -> None:
 def test_what_doubles_cannot_hold_is_refused_of_either_sign(text: str) -> None:
     with pytest.raises(UnitError, match="is not a finite number in m"):
         parse(text, units.LENGTH)
+
+
+@given(st.floats(1e-14, 1e12), st.sampled_from(["N·m", "N", "N·m·s/rad", "J", "N·m/rad"]))
+def test_what_is_written_is_read(value: float, unit: str) -> None:
+    """120.64 pN·m·s/rad stood in a table of sensitivities, whose file could then not be written."""
+    number, written = units.split(units.metric(value, unit))
+    assert float(number) * units.known_unit(written).factor == pytest.approx(value, rel=1e-5)

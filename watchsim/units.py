@@ -86,7 +86,7 @@ DIMENSIONS = (
     *(TRAVEL_PER_TURN, PER_LENGTH, ROTARY_CUBIC, LINEAR_CUBIC, TEMPERATURE, PER_KELVIN, PER_SPEED),
 )
 
-_PREFIXES = {"n": -9, "µ": -6, "u": -6, "m": -3, "c": -2, "d": -1, "k": 3, "M": 6, "G": 9}
+_PREFIXES = {"p": -12, "n": -9, "µ": -6, "u": -6, "m": -3, "c": -2, "d": -1, "k": 3, "M": 6, "G": 9}
 _METRIC = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 _PREFIXABLE: dict[str, Unit] = {
     "m": Unit(Fraction(1), 0, (1, 0, 0, 0, 0)),
