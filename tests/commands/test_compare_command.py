@@ -119,3 +119,11 @@ def test_run_against_an_earlier_one_prints_the_differences(tmp_path, capsys):
 def test_what_cannot_be_compared_is_refused(words, said, capsys):
     assert main(words) == 2
     assert said in capsys.readouterr().err
+
+
+def test_the_power_put_in_is_that_of_the_drive_and_not_what_gravity_lends():
+    runs = [ws.simulate(ws.load(GRAHAM).set("torques.0.value", f"{torque} mN·m"), 3.3) for torque in (-0.3, -0.33)]
+    wheel = runs[0].scene.torques[0].body
+    for run, power in zip(runs, ws.compare(*runs).outputs["power_in_W"].values, strict=True):
+        q = run.q[:, run.slices[wheel].start]
+        assert power * run.simulated == pytest.approx(run.scene.torques[0].value * (q[-1] - q[0]), rel=1e-9)

@@ -7,6 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import watchsim as ws
+from watchsim.analysis.flows import efficiency
 from watchsim.simulation.foregone import _after
 from watchsim.simulation.state import Stop
 
@@ -23,6 +24,7 @@ def test_a_wheel_out_of_mesh_races_and_ends_the_run() -> None:
     assert "wheel races" in raced.stop_message
     found = ws.verdict(raced)
     assert (found.name, found.works, found.t) == ("trips", False, pytest.approx(0.0, abs=0.01))
+    assert efficiency(raced) is None  # what the wheel has run up did not reach the balance
 
 
 def test_a_watch_that_came_to_rest_ends_the_run() -> None:

@@ -455,7 +455,8 @@ def energy_shares(run: Trajectory) -> Shares:
 
 
 def efficiency(run: Trajectory) -> float | None:
-    """From 0 to 1; None without an escapement, without work of the drive, or where damping of other bodies is in the sum."""
+    """Share of the drive's work that reached the oscillator over the whole run; None without an escapement, without work of the
+    drive, where damping of other bodies is in the sum, or where they have run up more than `MOVING` of the work."""
     scene, parts = run.scene, roles(run.scene)
     if parts.wheel is None or parts.oscillator is None or not keeps_time(scene):
         return None
@@ -467,5 +468,20 @@ def efficiency(run: Trajectory) -> float | None:
     work = run.energy.get("in_J", 0.0) - fallen
     if not work > 0.0:
         return None
+    if _kinetic_of_others(run, parts.oscillator) > MOVING * work:
+        return None
     reached = run.energy.get("dissipated", {}).get("damping", 0.0) + run.energy.get("stored_J", 0.0) - fallen
     return float(reached / work)
+
+
+MOVING = 0.02  # of the drive's work, in a wheel that races
+
+
+def _kinetic_of_others(run: Trajectory, oscillator: str) -> float:
+    """J at the end, of all that turns about a pivot but the oscillator."""
+    if run.end is None:
+        return 0.0
+    turning = (
+        body for body in run.scene.bodies if body.motion == "pivot" and body.name != oscillator and body.name in run.slices
+    )
+    return sum(0.5 * body.inertia * float(run.end[1][run.slices[body.name].start]) ** 2 for body in turning)

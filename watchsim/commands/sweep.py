@@ -109,7 +109,8 @@ def _sweep(args: argparse.Namespace, scene: Scene, outputs: tuple[Output, ...], 
     without = sum(row[outputs[0].column] is None for row in done.rows)
     if without:
         have = "has" if without == 1 else "have"
-        say(f"{without} of {len(done.rows)} points {have} no {outputs[0].label}; the column message says why.")
+        why = "; the column message says why" if any(row.get("message") for row in done.rows) else ": nothing swings in them"
+        say(f"{without} of {len(done.rows)} points {have} no {outputs[0].label}{why}.")
     return status_of(done.whole, folder, MISSED if without == len(done.rows) else FINE)
 
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from watchsim.analysis.flows import energy_shares
 from watchsim.analysis.summary import summary
 from watchsim.results.folder import TRAJECTORY, lock_text, read_results, read_summary
 from watchsim.scene.assign import dimension_of
@@ -156,7 +157,7 @@ def _of_run(run: Trajectory, name: str, numbers: dict[str, Any] | None) -> Side:
     outputs = _numbers(known, (*TIMED, "efficiency"))
     if run.simulated > 0.0:
         energy = known["energy"]
-        powers = {"power_in_W": energy["in_J"], **{f"{one}_W": energy["dissipated"].get(one) for one in SHARES}}
+        powers = {"power_in_W": energy_shares(run).supplied, **{f"{one}_W": energy["dissipated"].get(one) for one in SHARES}}
         outputs |= {key: (value / run.simulated, None) for key, value in powers.items() if value is not None}
     if not keeps_time(run.scene):
         outputs |= {key: (value, None) for key, value in _places(run.scene, known["bodies"])}
