@@ -16,7 +16,7 @@ from watchsim.geometry.primitives import Arc, Boxes, Point
 from watchsim.geometry.solids import area
 
 BORES = frozenset(("bore", "bores", "drill", "drills", "hole", "holes"))
-MARKS = frozenset(("axes", "axis", "center", "centers", "centre", "centres", "pivot", "pivots"))
+MARKS = frozenset(("axes", "axis", "center", "centers", "centre", "centres", "pivot", "pivots", "drehpunkt", "achse", "axe"))
 INWARD = 1e-6  # of an edge: so far beside it is looked whether there is material
 
 

@@ -278,20 +278,23 @@ PARTS = {
 FEATURES = {
     **dict.fromkeys(("escape", "scape", "teeth", "tooth", "zahn", "zaehne", "zähne", "dents"), WHEEL),
     **dict.fromkeys(("pallet", "pallets", "stone", "stones", "fork", "horn", "horns", "dart", "guard", "arm", "arms"), LEVER),
-    **dict.fromkeys(("gabel", "stein", "steine", "fourchette", "palette", "palettes", "levée", "levees"), LEVER),
+    **dict.fromkeys(("gabel", "stein", "steine", "hebestein", "hebesteine", "paletten", "klaue", "klauen", "messer"), LEVER),
+    **dict.fromkeys(("fourchette", "palette", "palettes", "levée", "levées", "levee", "levees", "dard"), LEVER),
     **dict.fromkeys(("beak", "nose", "bec", "nase"), CLICK),
-    **dict.fromkeys(("roller", "table", "safety", "impulse", "jewel", "rim", "hebelstein", "bob", "rod"), OSCILLATOR),
+    **dict.fromkeys(("roller", "table", "safety", "impulse", "jewel", "rim", "bob", "rod"), OSCILLATOR),
+    **dict.fromkeys(("hebelstein", "rolle", "sicherheitsrolle", "plateau"), OSCILLATOR),
 }
 TEETH = frozenset(("teeth", "tooth", "zahn", "zaehne", "zähne", "dents", "wheel", "gear", "pinion", "rad", "ratchet", "star"))
-STONES = frozenset(("pallet", "pallets", "stone", "stones", "stein", "steine", "palette", "palettes", "teeth"))
+STONES = frozenset(("pallet", "pallets", "stone", "stones", "stein", "steine", "palette", "palettes", "teeth", "paletten"))
+STONES |= {"hebestein", "hebesteine", "klaue", "klauen", "levée", "levées", "levee", "levees"}
 CLICKS = frozenset(("click", "pawl", "jumper", "nose", "beak", "klinke", "sperrklinke", "cliquet", "sautoir", "bec"))
 CAMS = frozenset(("cam", "came", "nocken", "kurvenscheibe", "snail", "schnecke", "limaçon"))
 PENDULUMS = frozenset(("pendulum", "pendel", "pendule", "rod", "bob"))
 ANCHORS = PENDULUMS | {"anchor", "anker", "ancre"}  # what swings a little only
 FORK = frozenset(("fork", "horn", "horns", "gabel", "fourchette"))
 PIN = frozenset(("pin", "jewel", "impulse", "hebelstein"))
-GUARD = frozenset(("dart", "guard"))
-ROLLER = frozenset(("safety", "roller"))
+GUARD = frozenset(("dart", "guard", "messer", "dard"))
+ROLLER = frozenset(("safety", "roller", "rolle", "sicherheitsrolle", "plateau"))
 RESTING = frozenset(("resting", "repos", "ruhe"))  # the long teeth of a duplex wheel
 LEAVES = frozenset(("passing", "leaf", "goldfeder", "auslösefeder"))
 DISCHARGES = frozenset(("discharge", "discharging", "unlocking", "auslösestein", "dégagement"))
