@@ -292,3 +292,22 @@ def test_a_part_does_not_replace_the_whole(
         assert read_results(tmp_path / name).stop == Stop.INTERRUPTED
         said = capsys.readouterr()
         assert f"goes to {tmp_path / name}" in said.err and f"Results: {tmp_path / name}" in said.out
+
+
+@pytest.mark.parametrize("study", [["tolerance"], ["sweep", "contacts.0.friction=0.1,0.12"]])
+def test_a_study_goes_on_only_in_the_folder_of_a_study(
+    study: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Was a study written among the files of another command: over scene.toml of `improve`, had it drawn the same names."""
+    folder = tmp_path / "out"
+    folder.mkdir()
+    (folder / "scene.toml").write_text("mine")
+    scene = profiles_dir().parent / "docs" / "guide" / "tolerances" / "swiss_lever.toml"
+    assert main([study[0], str(scene), *study[1:], "-o", str(folder), "--resume"]) == 2
+    assert "this folder holds no study" in capsys.readouterr().err
+    assert [(path.name, path.read_text()) for path in folder.iterdir()] == [("scene.toml", "mine")]
+    (folder / "scene.toml").rename(folder / ".hidden")  # what a system leaves in every folder is nobody's result
+    assert (
+        main(["sweep", LEVER, "contacts.0.friction=0.1", "--duration", "1.5 s", "--no-plots", "-o", str(folder), "--resume"])
+        == 0
+    )

@@ -192,14 +192,20 @@ def watched(compute: Callable[[Progress], Any]) -> Any:
 def study_folder(args: argparse.Namespace, scene: Scene, what: str, held: contextlib.ExitStack) -> Path:
     """The results folder, made if it is not there; refused where it holds something else."""
     from watchsim.commands.inputs import claimed, secured_folder
+    from watchsim.studies.workers import NAME
 
     name = scene.path.parent.name if scene.path else "scene"
     folder = Path(args.output or Path("results") / f"{name}-{what}")
     secured_folder(folder, "results", default=not args.output)
     resume = getattr(args, "resume", None)  # None: that study cannot go on
-    if folder.is_dir() and any(folder.iterdir()) and not (resume or args.force):
-        ways = "Replace" if resume is None else "Continue it (--resume), replace"
-        raise InputError(f"{folder} already exists. {ways} it (--force), or choose another folder (-o).")
+    if folder.is_dir() and not args.force and any(not path.name.startswith(".") for path in folder.iterdir()):
+        if not resume:
+            ways = "Replace" if resume is None else "Continue it (--resume), replace"
+            raise InputError(f"{folder} already exists. {ways} it (--force), or choose another folder (-o).")
+        if not (folder / NAME).is_file():
+            raise InputError(
+                f"--resume {folder}: this folder holds no study. Replace it (--force), or choose another folder (-o)."
+            )
     folder.mkdir(exist_ok=True)
     held.enter_context(claimed(folder))
     return folder

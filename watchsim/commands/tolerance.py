@@ -41,8 +41,7 @@ def options(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from watchsim.commands.inputs import load_scene
     from watchsim.scene.errors import SceneError
-    from watchsim.studies.tolerance import checked_samples, half_width, made
-    from watchsim.studies.tolerance_plan import plan_of
+    from watchsim.studies.yields import checked_samples, half_width
     from watchsim.units import TIME
 
     faults = []
@@ -61,6 +60,9 @@ def run(args: argparse.Namespace) -> int:
         raise InputError("\n".join([*faults, str(error)])) from error
     if faults:
         raise InputError("\n".join(faults))
+    from watchsim.studies.tolerance import made  # late: what computes takes as long to import as a fault to find
+    from watchsim.studies.tolerance_plan import plan_of
+
     check_tolerance(args.tol)
     duration = None if args.duration is None else parse_positive("--duration", args.duration, TIME)
     shard = _shard(args.shard)

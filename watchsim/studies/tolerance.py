@@ -29,10 +29,9 @@ from watchsim.studies.sweep import Progress, computed, seconds
 from watchsim.studies.tolerance_plan import Plan, plan_of
 from watchsim.studies.tolerance_result import Linear, Samples, ToleranceStudy, analysed
 from watchsim.studies.workers import NAME, Executor, Journal, chosen, read_rows
-from watchsim.studies.yields import share_of, towards_failures, weighted
-from watchsim.units import NUMBER, UnitError, parse
+from watchsim.studies.yields import checked_samples, half_width, share_of, towards_failures, weighted
 
-SAMPLES, MOST = 1024, 1_000_000
+SAMPLES = 1024
 BATCH = 16 * SEQUENCES  # samples between two looks at the interval
 SPARSE = 8  # every so many points of a sequence has its geometry measured, where no promise needs it
 SCENE = "scene.toml"
@@ -76,30 +75,6 @@ def tolerance(  # noqa: PLR0913 - options, by name
     plan = plan_of(scene, duration=seconds(duration), tolerance=tolerance, seed=seed, importance=importance, resumed=resumed)
     executor = chosen(workers, scheduler)
     return made(plan, count, executor, until=width, shard=shard, folder=folder, resume=resume, progress=progress)
-
-
-def checked_samples(samples: int) -> int:
-    """ValueError where so many cannot be."""
-    if isinstance(samples, bool) or not isinstance(samples, int) or not SEQUENCES <= samples <= MOST:
-        raise ValueError(f"samples: a whole number from {SEQUENCES} to {MOST} is needed, not {samples}")
-    return samples
-
-
-def half_width(until: float | str | None) -> float | None:
-    """The share of "±0.5 %"; ValueError for another text. A text needs its %: 0.5 would be half of all watches."""
-    if until is None:
-        return None
-    try:
-        if isinstance(until, str) and "%" not in until:
-            raise UnitError(f'"{until}" has no %')
-        value = parse(until.strip().removeprefix("±") if isinstance(until, str) else until, NUMBER)
-    except UnitError as error:
-        raise ValueError(f'until: {error}. Write "±0.5 %"') from error
-    if not 0.0 < value < 1.0:
-        raise ValueError(
-            f'until: half the width of an interval of the yield is above 0 and below 100 %, not {until}. Write "±0.5 %"'
-        )
-    return value
 
 
 def made(
