@@ -149,3 +149,16 @@ def test_names_are_refused_where_there_are_none(tmp_path: Path, capsys: pytest.C
     command = ["movie", str(folder), "--names", "--window", "0.9 s:1 s", "--fps", "25", "--size", "640x360"]
     assert main([*command, "-o", str(tmp_path / "names.gif")]) == 0
     capsys.readouterr()
+
+
+@pytest.mark.parametrize(
+    ("profile", "first", "second"), [("cylinder", "entry lip", "exit lip"), ("duplex", "locking roller", "impulse pallet")]
+)
+def test_a_balance_that_the_wheel_meets_itself_has_the_names_of_its_trade(profile: str, first: str, second: str) -> None:
+    scene = ws.load(ws.profiles_dir() / profile)
+    at = {one.text: one.point for one in part_names(scene)}
+    assert not {"entry pallet", "exit pallet"} & set(at)
+    if profile == "cylinder":  # a wheel that turns clockwise below comes from the left
+        assert at[first][0] < 0.0 < at[second][0]
+    else:  # the notch is nearer to the pivot than the pallet, which reaches to the impulse teeth
+        assert math.hypot(*at[first]) < 0.5 * math.hypot(*at[second])

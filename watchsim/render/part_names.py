@@ -17,7 +17,7 @@ from scipy.optimize import linear_sum_assignment
 
 from watchsim.analysis.timeline import pallet_side
 from watchsim.geometry.loops import Loop
-from watchsim.geometry.primitives import Point
+from watchsim.geometry.primitives import Arc, Point
 from watchsim.mechanism.compile import compile_scene
 from watchsim.render.marks import SIDES, PalletStones, spaced
 from watchsim.render.palette import Style
@@ -26,17 +26,21 @@ from watchsim.render.view import Frame, Pixels, hairsprings, seen
 from watchsim.render.words import Words
 from watchsim.scene.roles import (
     ALONE,
+    OFF_PIVOT,
     Roles,
     corners_of,
     drive_direction,
     layer_of,
     middle_of,
     pallet_name,
+    reach_of,
     touching,
     with_anchor,
 )
 from watchsim.scene.scene import Scene
 from watchsim.simulation.trajectory import Array, Trajectory, frames
+
+ROUND = 1e-3  # of its radius: farther from the pivot the middle of an arc is not there
 
 
 @dataclass(frozen=True)
@@ -96,25 +100,49 @@ def _pallets(scene: Scene, found: Roles) -> Iterator[PartName]:
 def _by_sides(scene: Scene, found: Roles) -> Iterator[PartName]:
     """The two pallets that the wheel meets, on the lever or hinged on it: entry is the one that its teeth come to first."""
     assert found.wheel is not None and found.lever is not None
-    places: list[tuple[str, Point]] = []
-    for contact in scene.contacts:
-        sides = {side.body: side.layer for side in contact.sides}
-        other = next((name for name in sides if found.wheel in sides and name != found.wheel), None)
-        if other is not None and found.lever in (other, scene.body(other).on):
-            places += [(other, middle_of([loop])) for loop in layer_of(scene.body(other), sides[other])]
+    words = [pallet_name(scene, name) for name in SIDES]
+    places = [(body, middle_of([loop])) for body, loop in _met(scene, found)]
     if len(places) == 1 and found.lever != found.oscillator:  # a detent's
         yield PartName(pallet_name(scene, ""), *places[0])
+    if found.lever == found.oscillator:
+        met = [loop for side, loop in _met(scene, found) if side == found.lever]
+        if len(met) == 1:
+            places, words = [(found.lever, lip) for lip in _lips(met[0])], [f"{name} lip" for name in SIDES]
+        rollers = [loop for loop in met if math.hypot(*middle_of([loop])) < OFF_PIVOT * reach_of([loop])]
+        if len(met) == len(SIDES) and len(rollers) == 1:  # a duplex
+            yield PartName("locking roller", found.lever, min(corners_of(rollers), key=lambda point: math.hypot(*point)))
+            yield PartName("impulse pallet", found.lever, middle_of([loop for loop in met if loop is not rollers[0]]))
+            return
     if len(places) != len(SIDES):
         return
     compiled = compile_scene(scene)
-    poses = frames(scene, compiled.slices, compiled.relative(compiled.q[None]))
+    q = np.array(compiled.q)
+    if found.lever == found.oscillator:  # which may start anywhere
+        q[compiled.slices[found.lever].start] = sum(one.rest for one in scene.springs if one.body == found.oscillator)
+    poses = frames(scene, compiled.slices, compiled.relative(q[None]))
     at = [(pose_matrix(poses[body][0]) @ (*place, 1.0))[:2] for body, place in places]
     wheel = poses[found.wheel][0, :2]
     line = 0.5 * (at[0] + at[1]) - wheel
     turn = line[0] * (at[0] - wheel)[1] - line[1] * (at[0] - wheel)[0]
     order = places if drive_direction(scene, found.wheel) * turn < 0.0 else places[::-1]
-    for name, (body, place) in zip(SIDES, order, strict=True):
-        yield PartName(pallet_name(scene, name), body, place)
+    for text, (body, place) in zip(words, order, strict=True):
+        yield PartName(text, body, place)
+
+
+def _met(scene: Scene, found: Roles) -> Iterator[tuple[str, Loop]]:
+    """The outlines that the wheel meets, on the lever or on what it carries, and whose they are."""
+    for contact in scene.contacts:
+        sides = {side.body: side.layer for side in contact.sides}
+        other = next((name for name in sides if found.wheel in sides and name != found.wheel), None)
+        if other is not None and found.lever in (other, scene.body(other).on):
+            yield from ((other, loop) for loop in layer_of(scene.body(other), sides[other]))
+
+
+def _lips(shell: Loop) -> list[Point]:
+    """The middles of the two ends of a shell round the pivot; of another outline none."""
+    round_ = [isinstance(edge, Arc) and math.hypot(edge.x, edge.y) < ROUND * edge.radius for edge in shell.edges]
+    ends = [edge.point(0.5) for edge, of_shell in zip(shell.edges, round_, strict=True) if not of_shell]
+    return ends if len(ends) == len(SIDES) == sum(round_) else []
 
 
 def _touching(scene: Scene, found: Roles) -> Iterator[PartName]:
