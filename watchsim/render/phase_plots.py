@@ -41,7 +41,8 @@ def bands(phases: Iterable[Phase]) -> list[tuple[Phase, str]]:
         if phase.name == "locked":
             continue
         impulses += phase.name == "impulse"
-        found.append((phase, shade_of(AGAIN if phase.name == "impulse" and impulses == 2 else phase.name)))
+        if phase.end > phase.start:
+            found.append((phase, shade_of(AGAIN if phase.name == "impulse" and impulses == 2 else phase.name)))
     return found
 
 
@@ -64,9 +65,9 @@ def names_in(beats: Iterable[Sequence[Phase]], left_out: Sequence[str] = ("locke
     for beat in beats:
         impulses = 0
         for phase in beat:
+            impulses += phase.name == "impulse"
             if phase.name in left_out or not phase.end > phase.start:
                 continue
-            impulses += phase.name == "impulse"
             name = AGAIN if banded and phase.name == "impulse" and impulses == 2 else phase.name
             words.setdefault(name, set()).add(f"{phase.name} on {phase.on}" if banded and phase.on else name)
     found = {name: min(said) if len(said) == 1 else name for name, said in words.items()}

@@ -352,11 +352,12 @@ def passing(run: Trajectory, window: Window, whole: bool = False) -> list[list[P
         return []
     start, end = window
     cut = (
-        replace(one, start=max(one.start, start), end=min(one.end, end))
+        replace(one, start=max(one.start, start), end=max(min(one.end, end), start))
         for one in phases(run, near)
-        if one.end > start and one.start < end
+        if one.start < end and (one.end > start or one.name == "impulse")  # one out of sight counts: the next is the second
     )
-    return [list(own) for _, own in groupby(cut, key=lambda one: one.beat)]
+    found = [list(own) for _, own in groupby(cut, key=lambda one: one.beat)]
+    return [beat for beat in found if beat[-1].end > start]
 
 
 SEARCHED = 3.1  # oscillations from the end: two whole beats lie in them
