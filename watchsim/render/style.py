@@ -356,8 +356,8 @@ def passing(run: Trajectory, window: Window, whole: bool = False) -> list[list[P
         for one in phases(run, near)
         if one.start < end and (one.end > start or one.name == "impulse")  # one out of sight counts: the next is the second
     )
-    found = [list(own) for _, own in groupby(cut, key=lambda one: one.beat)]
-    return [beat for beat in found if beat[-1].end > start]
+    passing = [list(own) for _, own in groupby(cut, key=lambda one: one.beat)]
+    return [beat for beat in passing if beat[-1].end > start]
 
 
 SEARCHED = 3.1  # oscillations from the end: two whole beats lie in them
