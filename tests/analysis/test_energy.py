@@ -15,6 +15,8 @@ from numpy.polynomial import Polynomial
 from scipy.integrate import quad
 
 from watchsim.analysis.flows import Flows, efficiency, flows, work_of_gravity
+from watchsim.analysis.summary import summary
+from watchsim.analysis.timing import beats
 from watchsim.mechanism.compile import compile_scene
 from watchsim.model import (
     BEARING,
@@ -36,9 +38,10 @@ from watchsim.model import (
     Model,
     records,
 )
+from watchsim.paths import profiles_dir
 from watchsim.scene.forces import Damping, Torque
 from watchsim.scene.load import load
-from watchsim.scene.scene import Scene
+from watchsim.scene.scene import Body, Scene
 from watchsim.simulation.simulate import simulate
 
 # What is a model made up of a few coordinates, joints and tables?
@@ -69,65 +72,61 @@ def model_of(**parts: Any) -> Any:
 
 # Is the share of the drive's work that reaches the oscillator what the account says, and when is there none?
 
-ENERGY: dict[str, Any] = {"in_J": 8e-6, "stored_J": 1e-6, "dissipated": {"damping": 2e-6, "friction": 5e-6}}
+
+@pytest.mark.parametrize(
+    ("profile", "duration"), [("swiss_lever", 4.0), ("swiss_lever", 30.0), ("recoil_anchor", 20.0), ("detent", 8.0)]
+)
+def test_the_share_is_of_the_window_of_amplitude_and_rate(profile: str, duration: float) -> None:
+    """Against the accounts of two runs that end at its first and last turning point: what was damped, and what was gained."""
+    scene = replace(load(profiles_dir() / profile), expect=())
+    run = simulate(scene, duration, record="all")
+    found, (start, end) = beats(run), summary(run)["window_s"]
+    ends = found.end[(found.end >= start) & (found.end <= end)]
+    first, last = (simulate(scene, float(ends[k]), record="statistics") for k in ((len(ends) + 1) % 2, -1))
+
+    def between(name: str) -> float:
+        one, other = ({**one.energy, **one.energy["dissipated"], "fallen": work_of_gravity(one)} for one in (first, last))
+        return float(other[name] - one[name])
+
+    reached = between("damping") + between("stored_J") - between("fallen")
+    assert efficiency(run) == pytest.approx(reached / (between("in_J") - between("fallen")), rel=1e-6)
+    assert summary(run)["efficiency"] == efficiency(run)
 
 
-def share(scene: Scene, energy: dict[str, Any] = ENERGY, **changes: Any) -> float | None:
-    return efficiency(replace(balance_only(Events(), 1.0, scene), energy=energy, **changes))
+def test_it_is_the_same_whatever_was_kept() -> None:
+    """All, or the end only; nothing is said where the rows of that time are not there."""
+    scene = load(profiles_dir() / "swiss_lever")
+    whole, late, early = (simulate(scene, 6.0, record=kept) for kept in ("all", "statistics", [(1.0, 2.0)]))
+    assert efficiency(late) == pytest.approx(efficiency(whole), rel=1e-12)
+    assert efficiency(early) is None
 
 
 def damped(*names: str) -> Scene:
     return replace(lever_scene(), damping=tuple(Damping(name, 1e-9) for name in names))
 
 
-def test_what_damping_takes_and_what_is_gained_over_the_work() -> None:
-    assert share(damped("balance")) == pytest.approx(3.0 / 8.0, rel=1e-15)
-    assert share(damped("balance"), ENERGY | {"stored_J": -1e-6}) == pytest.approx(1.0 / 8.0, rel=1e-15)
-    assert share(lever_scene(), {"in_J": 8e-6}) == 0.0
-
-
 @pytest.mark.parametrize(
     "scene",
     [
-        pytest.param(damped("balance", "lever"), id="damping of another body is in the same sum"),
         pytest.param(
             replace(damped("balance"), torques=(*lever_scene().torques, Torque("balance", 1e-9))), id="drives the balance, too"
         ),
         pytest.param(replace(damped("balance"), torques=()), id="no drive"),
         pytest.param(replace(damped("balance"), springs=()), id="no oscillator"),
         pytest.param(replace(damped("balance"), contacts=(), lift_angle=None), id="no lever"),
+        pytest.param(damped("balance"), id="no whole oscillation"),
     ],
 )
 def test_where_it_cannot_be_told(scene: Scene) -> None:
-    assert share(scene) is None
+    assert efficiency(balance_only(Events(), 1.0, scene)) is None
 
 
-@pytest.mark.parametrize("work", [0.0, -1e-9])
-def test_without_work_there_is_no_share(work: float) -> None:
-    assert share(damped("balance"), ENERGY | {"in_J": work}) is None
-    assert share(damped("balance"), {"stored_J": 1e-6, "dissipated": {"damping": 2e-6}}) is None
-
-
-def test_what_weights_have_fallen_is_only_lent() -> None:
-    """A lever off its balance falls by 4 µm: that work is taken from both sides."""
-    scene = damped("balance")
-    lever = replace(scene.body("lever"), mass=0.01, centre_of_mass=(4e-6, 0.0))
-    scene = replace(scene, gravity=(0.0, -10.0), bodies=tuple(lever if b.name == "lever" else b for b in scene.bodies))
-    end = np.array([0.0, -0.5 * np.pi, 0.0])
-    fallen = 0.01 * 10.0 * 4e-6
-    found = share(scene, end_q=end, end_u=np.zeros(3))
-    assert found == pytest.approx((3e-6 - fallen) / (8e-6 - fallen), rel=1e-12)
-    # Of a window the rows begin elsewhere.
-    assert share(scene, end_q=end, end_u=np.zeros(3), t=np.ones(1), q=np.ones((1, 3))) == found
-
-
-def test_where_no_motion_is_known_nothing_has_fallen() -> None:
-    """Without rows, or without an end."""
-    scene = replace(damped("balance"), gravity=(0.0, -10.0))
-    run = balance_only(Events(), 1.0, scene)
-    nothing = {name: getattr(run, name)[:0] for name in ("t", "q", "u", "a")}
-    assert share(scene, **nothing) == pytest.approx(3.0 / 8.0, rel=1e-15)
-    assert share(scene, **nothing, end_q=np.ones(3), end_u=np.ones(3)) == pytest.approx(3.0 / 8.0, rel=1e-15)
+def test_what_a_body_that_slides_falls_is_only_lent() -> None:
+    """A weight on a cord beside the escapement falls by itself: neither work of the drive, nor does it reach the balance."""
+    scene = replace(load(profiles_dir() / "recoil_anchor"), expect=())
+    both = replace(scene, bodies=(*scene.bodies, Body("weight", "slide", mass=0.1, axis=(0.0, -1.0), velocity=(0.0,))))
+    alone, beside = (efficiency(simulate(one, 6.0, record="all")) for one in (scene, both))
+    assert beside == pytest.approx(alone, rel=1e-9)
 
 
 # Are work and losses between rows the integrals of their powers, whatever forces act?

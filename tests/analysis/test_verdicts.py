@@ -12,9 +12,13 @@ import pytest
 from analysis.made_beats import DEGREE, PERIOD, Events, balance_only, lever_run, lever_scene, polygon, star
 from analysis.made_faults import chipped, knocked, renamed, swiss, toothless, turned_over, unguarded
 from every_time import few
+from profiles.led_wheel import polygon as outline
 from scipy.integrate import quad
 from scipy.optimize import brentq
+from shapely import affinity
 
+import watchsim as ws
+from watchsim.analysis.summary import summary
 from watchsim.analysis.timing import beats
 from watchsim.analysis.verdict import overbanking, unsettled, verdict
 from watchsim.analysis.verdict_kinds import Verdict
@@ -89,6 +93,52 @@ def test_in_a_mirror_and_under_other_names_it_is_the_same_fault(fault):
     found = judged(renamed(turned_over(scene)), duration)
     assert (found.name, found.body) == (name, {"wheel": "rad", "lever": "anker", "balance": "unruh"}[body])
     assert abs(found.torque) == pytest.approx(drive) and "anker" in found.message
+
+
+def test_a_wheel_that_races_past_a_lever_that_went_over_is_said_to_race():
+    """Its teeth are out of reach of the stones."""
+    run = simulate(knocked(unguarded(swiss(bodies_wheel_position_1="-0.3 mm")), 0.05, 2e-6), 1.0)
+    found = verdict(run)
+    assert found.name == "overbanks" and found.body == "lever"
+    assert "wheel runs through" in found.message and "is not unlocked" not in found.message
+    assert summary(run)["efficiency"] is None and "nothing locks wheel" in summary(run)["timing_message"]
+
+
+# Is a swing that ends with a blow distinguished from one that ends by itself?
+
+
+def blocked(scene: Scene, angle: float) -> bool:
+    """Do the outlines of pendulum and wheel overlap with the pendulum at that angle (rad), wherever the wheel stands?"""
+    wheel, pendulum = (
+        affinity.translate(outline(scene, name, {layer}), *scene.body(name).position)
+        for name, layer in (("wheel", "TEETH"), ("pendulum", "PALLETS"))
+    )
+    held = affinity.rotate(pendulum, angle, scene.body("pendulum").position, use_radians=True)
+    turned = np.linspace(0.0, pitch(scene, "wheel"), 400)
+    return all(affinity.rotate(wheel, way, scene.body("wheel").position, use_radians=True).intersects(held) for way in turned)
+
+
+@pytest.mark.parametrize("drive", ["-25 mN·m", "-40 mN·m"])
+@pytest.mark.parametrize("restitution", ["0", "0.3"])
+def test_a_swing_that_ends_on_the_wheel_is_no_tick(drive, restitution):
+    """Too strong a drive swings a clock's anchor out until the corner of a pallet is at the bottom of the teeth."""
+    scene = load(profiles_dir() / "graham").set("torques.0.value", drive).set("contacts.0.restitution", restitution)
+    run = simulate(scene, 20.0)
+    found = verdict(run)
+    assert (found.name, found.body, found.works) == ("knocks", "pendulum", False)
+    assert "pendulum strikes wheel at 9.88°, which ends its swing" in found.message and "wheel.TEETH arc" in found.pair
+    assert "the clock gallops" in found.message and f"{found.count} times in" in found.message
+    reached = min(beats(run).end_at[-2:], key=abs)  # the other side swings freely, a little further
+    beyond = math.copysign(math.radians(0.05), reached)
+    assert blocked(scene, reached + beyond) and not blocked(scene, reached - beyond)
+    assert "30 of its 60 half swings end with a blow" in ws.steady(scene).message
+
+
+def test_a_swing_that_ends_by_itself_is_none():
+    """As far out, with less drive, before it has come to the bottom of the teeth."""
+    scene = load(profiles_dir() / "graham").set("torques.0.value", "-25 mN·m")
+    assert judged(scene, 12.0).name == "unsettled"
+    assert ws.steady(load(profiles_dir() / "graham")).message == ""
 
 
 def test_a_balance_at_rest_beside_the_fork_is_named():

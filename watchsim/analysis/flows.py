@@ -7,7 +7,7 @@ finite sums: Gauss's rule with five points is exact for their squares.
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,14 +15,16 @@ from numpy.typing import NDArray
 
 from watchsim.analysis.balanced_forces import inertial
 from watchsim.analysis.forces import Forces, absolute, bearing_friction, forces
+from watchsim.analysis.timing import Beats, Window, beats, is_recorded, last_window
 from watchsim.dynamics.forces import line_spring_energies, line_spring_powers
 from watchsim.mechanism.coiled import of_coil
-from watchsim.mechanism.compile import Compiled
+from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.model import COIL_ENERGY, COIL_TORQUE, DAMPING_LAWS, FREE, OVER_TIME, REPEATED, Model, resistance
 from watchsim.scene.roles import keeps_time, roles
-from watchsim.scene.scene import STATISTICS
+from watchsim.scene.scene import STATISTICS, Body, Scene
 from watchsim.scene.trains import start_poses
 from watchsim.simulation import EVENT_DRIVEN
+from watchsim.simulation.recording import FEWEST_TURNS
 from watchsim.simulation.state import EventKind
 from watchsim.simulation.trajectory import Array, Trajectory, frames, speeds
 from watchsim.tolerances import LEDGER_SHARE
@@ -414,15 +416,20 @@ def _speed(body: str, places: dict[str, Array], rates: dict[str, Array], held: A
 
 def work_of_gravity(run: Trajectory) -> float:
     """J from the start to the end: what the ledger of a run takes for work of the drive is only lent and given back."""
-    scene = run.scene
-    if not any(scene.gravity) or run.end is None:
+    if run.end is None:
         return 0.0
-    starts, ends = start_poses(scene), frames(scene, run.slices, run.end[0][None, :])
+    ends = frames(run.scene, run.slices, run.end[0][None, :])
+    starts = start_poses(run.scene)
+    return _fallen(run.scene, run.scene.bodies, {name: np.array([starts[name], ends[name][0]]) for name in starts})
+
+
+def _fallen(scene: Scene, bodies: Iterable[Body], poses: Mapping[str, Array]) -> float:
+    """J that gravity does on bodies from the first of their poses to the second."""
     total = 0.0
-    for body in scene.bodies:
-        (cx, cy), poses = body.centre_of_mass, np.array([starts[body.name], ends[body.name][0]])
-        c, s = np.cos(poses[:, 2]), np.sin(poses[:, 2])
-        way = np.diff(poses[:, :2] + np.stack((c * cx - s * cy, s * cx + c * cy), axis=1), axis=0)[0]
+    for body in bodies if any(scene.gravity) else ():
+        (cx, cy), pose = body.centre_of_mass, poses[body.name]
+        c, s = np.cos(pose[:, 2]), np.sin(pose[:, 2])
+        way = np.diff(pose[:, :2] + np.stack((c * cx - s * cy, s * cx + c * cy), axis=1), axis=0)[0]
         total += body.mass * float(way @ np.array(scene.gravity))
     return total
 
@@ -454,34 +461,29 @@ def energy_shares(run: Trajectory) -> Shares:
     return Shares(supplied, {cause: value / supplied for cause, value in went.items() if value != 0.0}, max(-stored, 0.0))
 
 
-def efficiency(run: Trajectory) -> float | None:
-    """Share of the drive's work that reached the oscillator over the whole run; None without an escapement, without work of the
-    drive, where damping of other bodies is in the sum, or where they have run up more than `MOVING` of the work."""
+def efficiency(run: Trajectory, found: Beats | None = None, window: Window | None = None) -> float | None:
+    """Share of the drive's work that reached the oscillator by its contacts, as its losses and its gain.
+
+    In the whole oscillations of a window (s; default the last one, that of amplitude and rate), from turning point to turning
+    point.
+
+    None without an escapement, without work of the drive or a whole oscillation there, or where its rows were not kept.
+    """
     scene, parts = run.scene, roles(run.scene)
     if parts.wheel is None or parts.oscillator is None or not keeps_time(scene):
         return None
-    if any(damping.body != parts.oscillator for damping in scene.damping):
-        return None
     if any(torque.body == parts.oscillator for torque in scene.torques):
         return None
-    fallen = work_of_gravity(run)
-    work = run.energy.get("in_J", 0.0) - fallen
-    if not work > 0.0:
-        return None
-    if _kinetic_of_others(run, parts.oscillator) > MOVING * work:
-        return None
-    reached = run.energy.get("dissipated", {}).get("damping", 0.0) + run.energy.get("stored_J", 0.0) - fallen
-    return float(reached / work)
-
-
-MOVING = 0.02  # of the drive's work, in a wheel that races
-
-
-def _kinetic_of_others(run: Trajectory, oscillator: str) -> float:
-    """J at the end, of all that turns about a pivot but the oscillator."""
-    if run.end is None:
-        return 0.0
-    turning = (
-        body for body in run.scene.bodies if body.motion == "pivot" and body.name != oscillator and body.name in run.slices
-    )
-    return sum(0.5 * body.inertia * float(run.end[1][run.slices[body.name].start]) ** 2 for body in turning)
+    compiled, found = compile_scene(scene), beats(run) if found is None else found
+    start, end = window or last_window(run, found.nominal_period)
+    ends = found.end[(found.end >= start) & (found.end <= end)]
+    ends = ends[is_recorded(run, ends)]
+    ends = ends[(len(ends) + 1) % 2 :]
+    if len(ends) < FEWEST_TURNS or (len(compiled.model.bearings) and run.keep == STATISTICS):
+        return None  # what bearings take is known only where all events are kept
+    first, last = (np.searchsorted(run.t, ends[[0, -1]], side="right") - 1).tolist()
+    made, own = flows(run, compiled, slice(first, last + 1)), run.slices[parts.oscillator].start
+    reached, drive = made.own[:, own] + made.damped[:, own] - made.driven[:, own] - made.joined[:, own], made.drive
+    loose = [body for body in scene.bodies if body.motion in ("slide", "free")]  # the weight of others is among what is stored
+    work = float(drive[-1] - drive[0]) - _fallen(scene, loose, frames(scene, run.slices, run.q[[first, last]]))
+    return float((reached[-1] - reached[0]) / work) if work > 0.0 else None

@@ -213,13 +213,13 @@ def _timing(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         yield "frequency", f"{numbers['vph']:.2f} vph, averaged from {start:.4g} s to {end:.4g} s"
         if any(numbers[f"{name}_error"] is not None for name, _, _ in AVERAGED):
             yield "", SCATTER
+    if (share := numbers["efficiency"]) is not None:
+        part = f"{100.0 * share:.1f} %" if share >= 0.0 else "none"
+        given = "" if share >= 0.0 else f", which gave away {-100.0 * share:.1f} % as much"
+        yield "efficiency", f"{part} of the drive's work in that time reached the oscillator{given}"
     if (missed := numbers["missed_beats"]) is not None:
         where = f"in {numbers['beats']} half swings"
         yield "missed beats", f"{missed} {where}: half pitches the wheel fell short or ran ahead" if missed else f"none {where}"
-    if (share := numbers["efficiency"]) is not None and share < 0.0:
-        yield "efficiency", f"none of the drive's work reached the oscillator, which gave away {-100.0 * share:.1f} % as much"
-    elif share is not None:
-        yield "efficiency", f"{100.0 * share:.1f} % of the drive's work reached the oscillator"
 
 
 def _heard(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:

@@ -219,10 +219,9 @@ def summary(run: Trajectory) -> dict[str, Any]:
     `step_s` (of a method with fixed steps), `worst_complementarity_residual` (worst violation of a complementarity condition,
     as a share of the problem's largest term), `warnings` (sentences, see analysis/doubts.py), `notes` (what the scene leaves
     unsaid or says without effect, see mechanism/notes.py), `timing_message` (why there is no amplitude or rate), `efficiency`
-    (share of the drive's work that reaches the oscillator).
+    (share of the drive's work that reaches the oscillator, over `window_s`; `energy` is of the whole run).
     """
     numbers: dict[str, Any] = {**_about(run), "bodies": _bodies(run), **_counts(run), **_timing(run)}
-    numbers["efficiency"] = None if _keeps_nothing_going(run, numbers["verdict_message"]) else efficiency(run)
     numbers["expect"] = judged(run.scene.expect, numbers)
     numbers["warnings"] = list(doubts(run))
     numbers["notes"] = [finding.message for finding in notes(run.scene)]
@@ -298,7 +297,7 @@ def _timing(run: Trajectory) -> dict[str, Any]:
         unknown = dict.fromkeys(("whole_run", "timegrapher", "missed_beats"))
         nothing = {"beats": 0, **unknown, "stopped": False, "stopped_message": None}
         values = {**_timing_of(None), **nothing, **_judgement(NOTHING)}
-        return {**values, "timing_message": why_no_timing(run, None, values)}
+        return {**values, "timing_message": why_no_timing(run, None, values), "efficiency": None}
     found = beats(run)
     window = last_window(run, found.nominal_period)
     stands, judged = standstill(run, found), verdict(run, found)
@@ -314,6 +313,7 @@ def _timing(run: Trajectory) -> dict[str, Any]:
         "stopped": stands is not None,
         "stopped_message": stands.message if stands else None,
         **_judgement(judged),
+        "efficiency": None if idle else efficiency(run, found, window),
     }
 
 

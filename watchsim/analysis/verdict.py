@@ -6,7 +6,7 @@ backwards   the wheel turns against its drive, or its drive turns it against its
 overbanks   the lever went over while the impulse pin was away; the pin now strikes the fork from outside
 stops       the wheel stands: set on lock, on impulse, or the swing is too small to unlock
 trips       the wheel passed more teeth than the lever let go, or teeth come to rest on an impulse face
-knocks      the impulse pin strikes the outside of the fork near the turning point (rebanking)
+knocks      the impulse pin strikes the outside of the fork near the turning point (rebanking), or blows end the swings
 unsettled   it ticks, but its amplitude has yet to settle, or the run is too short to tell
 ticks       none of these
 """
@@ -20,7 +20,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from watchsim.analysis.escape_wheel import missed_beats, standstill
-from watchsim.analysis.timing import Beats, averages, beats, last_window
+from watchsim.analysis.flows import LOSSES
+from watchsim.analysis.timing import Beats, Bits, Events, averages, beats, involves, last_window
 from watchsim.analysis.verdict_kinds import (
     BACKWARDS,
     KNOCKS,
@@ -181,12 +182,15 @@ def overbanking(watch: Watch) -> Verdict | None:
     banked = [number for number in in_force(run, [t])[0] if number in bankings]
     if not banked or not watch.has_shapes or not _pressed_on(arms(run, watch.compiled, t, [contact, *banked]), watch.lever):
         return None
-    over, pair = _went_over(watch), str(run.pairs[contact])
+    over, pair, free = _went_over(watch), str(run.pairs[contact]), running_free(watch)
     drive = watch.drive(over)
+    wheel = f"{watch.wheel}, under {torque_text(drive)}, is not unlocked"
+    if free is not None:
+        wheel = f"{free[1]}, and nothing locks it, under {torque_text(drive)}"
     angle = degrees(float(watch.angle(watch.oscillator, np.array([t]))[0]) - watch.rest)
     words = (
         f"{when(over)}  the watch overbanks: {watch.lever} went over while {watch.oscillator} was away, which now strikes "
-        f"it from outside at {angle} ({pair}); {watch.wheel}, under {torque_text(drive)}, is not unlocked. "
+        f"it from outside at {angle} ({pair}); {wheel}. "
         f"No guard pin or horn kept {watch.lever} at its banking"
     )
     return Verdict(OVERBANKS, words, over, watch.lever, pair, drive)
@@ -212,31 +216,60 @@ SQUARE = (
 
 
 def knocking(watch: Watch) -> Verdict | None:
-    """In the second half of the run, or its last window: a blow by the lever more than half a turn from rest, or by a stop."""
-    blows = knocks(watch)
-    start, end = last_window(watch.run, watch.found.nominal_period)
-    if blows is None or blows.last < min(start, 0.5 * end):
+    """In the second half of the run, or its last window: a blow by the lever more than half a turn from rest, or by a stop; or
+    at every other turning point of that window a blow of whatever kind, as of a pallet that runs into the wheel's teeth."""
+    blows, window = knocks(watch), last_window(watch.run, watch.found.nominal_period)
+    if blows is None or blows.last < min(window[0], 0.5 * window[1]):
+        blows = _stopped_short(watch, window[0])
+    if blows is None:
         return None
-    drive, means = watch.drive(blows.first), averages(watch.found, (start, end))
+    drive, means = watch.drive(blows.first), averages(watch.found, window)
     pair, where = watch.run.pairs[blows.contact], degrees(abs(blows.angle))
     other = pair.body_a if pair.body_b == watch.oscillator else pair.body_b
     words = f"{when(blows.first)}  the watch knocks: {watch.oscillator} strikes {other} from outside at {where}, "
-    words += f"{times(blows.count)} ({pair}), under {torque_text(drive)} at {watch.wheel}"
+    if blows.swings:
+        words = f"{when(blows.first)}  the watch knocks: {watch.oscillator} strikes {other} at {where}, which ends its swing, "
+    words += f"{times(blows.count)} {f'in {blows.swings} half swings ' * bool(blows.swings)}({pair}), "
+    words += f"under {torque_text(drive)} at {watch.wheel}"
     if means.rate_s_per_d is not None and means.rate_s_per_d > 0.0:
-        words += f"; the watch gallops, {means.rate_s_per_d:+.3g} s/d"
+        words += f"; the watch gallops, +{rounded(means.rate_s_per_d)} s/d"
     return Verdict(KNOCKS, words, blows.first, watch.oscillator, str(pair), drive, blows.count)
+
+
+def blows_that_turn(events: Events, touching: Bits, turned: Array) -> Events:
+    """Those at which the oscillator turned back, at the times `turned` (s); `touching`: by contact, whether it is its own.
+
+    What turns back by itself is at rest then, and strikes nothing.
+    """
+    blows: Events = events[np.isin(events["kind"], LOSSES) & touching[events["contact"]] & np.isin(events["t"], turned)]
+    return blows
+
+
+def _stopped_short(watch: Watch, start: float) -> Knocks | None:
+    """None where fewer than half of the swings from `start` (s) on end with a blow."""
+    run, found = watch.run, watch.found
+    touching = np.array([*map(involves(watch.oscillator), run.pairs), False])
+    blows, late = blows_that_turn(run.events, touching, found.end), found.end[found.end >= start]
+    if not len(late) or 2 * np.isin(late, blows["t"]).sum() < len(late):
+        return None
+    ended = np.flatnonzero(np.isin(found.end, blows["t"]))
+    hardest = blows[np.argmax(np.where(blows["t"] == found.end[ended[-1]], blows["impulse_normal"], -np.inf))]
+    first, last = found.end[ended[[0, -1]]].tolist()
+    angle = float(found.end_at[ended[-1]]) - watch.rest
+    return Knocks(first, int(hardest["contact"]), last, angle, len(ended), len(found) - int(ended[0]))
 
 
 @dataclass(frozen=True, slots=True)
 class Knocks:
     """The impacts that turn the oscillator back from outside: the first with its contact, the last with how far from rest (rad)
-    that was, and at how many turning points; s."""
+    that was, at how many turning points, and of how many from the first on where blows of any kind are counted; s."""
 
     first: float
     contact: int
     last: float
     angle: float
     count: int
+    swings: int = 0
 
 
 def knocks(watch: Watch) -> Knocks | None:

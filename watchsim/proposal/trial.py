@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import tempfile
 import time
 from collections.abc import Iterator, Mapping, Sequence
@@ -16,11 +17,12 @@ from watchsim.analysis.verdict import verdict
 from watchsim.proposal.pieces import OSCILLATOR
 from watchsim.proposal.propose import Proposal, propose
 from watchsim.scene.load import load
-from watchsim.scene.roles import pitch, swings
+from watchsim.scene.roles import frequency, pitch, swings
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.trajectory import Trajectory
 
-SECONDS, LONGER = 3.0, 60.0  # the longer one where the wheel brakes at first, as a swing does that is too large
+SECONDS, PERIODS = 3.0, 6.0  # at least: over the last three periods the work of the wheel is counted
+LONGER = 60.0  # where the wheel brakes at first, as a swing does that is too large
 PATIENCE = 10.0  # s of processor time: a mechanism that takes longer to compute is left to its user
 STILL = 1e-6  # rad or m: what moves less in all that time does not move
 
@@ -62,11 +64,12 @@ def _run(files: Mapping[str, bytes]) -> tuple[list[str], bool]:
             (Path(folder) / name).write_bytes(data)
         scene = load(Path(folder) / "scene.toml")
         try:
-            run = simulate(scene, SECONDS, progress=progress, to_the_end=False)
+            seconds = max(SECONDS, PERIODS / (frequency(scene) or math.inf))
+            run = simulate(scene, seconds, progress=progress, to_the_end=False)
             if (summary(run)["efficiency"] or 0.0) < 0.0:
                 run = simulate(scene, LONGER, progress=progress, to_the_end=False)
         except _TakesLong:
-            return [f"a trial of {SECONDS:g} s takes long and was broken off: whether it works is not known"], False
+            return [f"a trial of {seconds:.3g} s takes long and was broken off: whether it works is not known"], False
     numbers = summary(run)
     return list(_wrong(run, numbers)), (numbers["efficiency"] or 0.0) > 0.0 or _fall_back(run) == []
 

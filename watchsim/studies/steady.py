@@ -13,12 +13,16 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
+
 from watchsim.analysis.timing import DAY
+from watchsim.analysis.verdict import blows_that_turn
 from watchsim.analysis.verdict_kinds import TICKS, UNSETTLED
 from watchsim.scene.errors import Faults, SceneError
 from watchsim.scene.roles import is_driven, only_presses, roles
 from watchsim.scene.scene import Scene
 from watchsim.scene.toml import key_lines
+from watchsim.simulation.recording import pairs_of
 from watchsim.simulation.state import State, Stop
 from watchsim.simulation.systems import systems_of
 from watchsim.studies.all_cycles import Survey, Swings, judged, late_means, less_sure, run_from, with_all_cycles
@@ -40,11 +44,13 @@ from watchsim.studies.return_map import (
     repeats,
 )
 from watchsim.studies.section import (
+    Events,
     Loop,
     NoSection,
     Parts,
     first_section,
     parts_of,
+    turns,
     why_no_section,
     with_springs_held,
 )
@@ -256,6 +262,7 @@ def _cycle(loop: Loop, parts: Parts, exact: Polished) -> Cycle:
     return Cycle(
         found=True,
         verdict=TICKS if parts.wheel >= 0 else None,
+        message=_blows(loop, parts, exact.turn.events),
         amplitude_deg=_degrees(loop, parts, means.amplitude),
         amplitude_deg_error=_degrees(loop, parts, exact.amplitude_error),
         period_s=means.period,
@@ -270,6 +277,17 @@ def _cycle(loop: Loop, parts: Parts, exact: Polished) -> Cycle:
         oscillations=exact.per,
         tooth_spread_deg=_degrees(loop, parts, means.spread),
     )
+
+
+def _blows(loop: Loop, parts: Parts, events: Events) -> str:
+    """What ends the swings of a cycle, where that is a blow in half of them; "" where they end by themselves."""
+    ends = turns(events, parts)["t"]
+    blows = blows_that_turn(events, parts.touching, ends)
+    count = int(np.isin(ends, blows["t"]).sum())
+    if not count or 2 * count < len(ends):
+        return ""
+    pair = pairs_of(loop.compiled)[int(blows["contact"][np.argmax(blows["impulse_normal"])])]
+    return f"{count} of its {len(ends)} half swings end with a blow ({pair}): without it they would be larger"
 
 
 def _degrees(loop: Loop, parts: Parts, value: float | None) -> float | None:
