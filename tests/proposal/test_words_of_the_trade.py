@@ -2,7 +2,7 @@
 
 import pytest
 
-from watchsim.proposal.pieces import LEVER, OSCILLATOR, facing_by_name, part_of
+from watchsim.proposal.words import LEVER, OSCILLATOR, facing_by_name, part_of
 
 
 @pytest.mark.parametrize(

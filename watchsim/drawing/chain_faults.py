@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.drawing.findings import Finding, Stroke, finding_at
-from watchsim.drawing.material import MARKS, last_word
+from watchsim.drawing.material import is_mark
 from watchsim.drawing.nodes import TIGHT, Grid, Nodes, Outline, Track, nearest_fraction, passes_through
 from watchsim.geometry.loops import Box, Floats, Ints, Loop, Table, meetings, near_pairs, table_of, within
 from watchsim.geometry.primitives import Arc, Edge, Line, Point
@@ -40,7 +40,7 @@ def open_ends(chains: Sequence[Sequence[int]], loose: Sequence[int], strokes: Se
     near = near_ends([nodes.ends[end] for end in loose])
     stray = stray_lines([steps[0] // 2 for steps in chains if len(steps) == 1], loose, near, strokes)
     pairs = paired(loose, near, stray, chains_of(chains, strokes))
-    found = [stray_finding(strokes[number]) for number in stray if last_word(strokes[number].layer) not in MARKS]
+    found = [stray_finding(strokes[number]) for number in stray if not is_mark(strokes[number].layer)]
     return found + [gap_finding(a, b, strokes, nodes) for a, b in pairs]
 
 

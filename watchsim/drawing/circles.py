@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from watchsim.drawing.chain_faults import SHALLOW, Layer, all_meetings, crosses
 from watchsim.drawing.findings import Finding, finding_at
-from watchsim.drawing.material import MARKS, last_word
+from watchsim.drawing.material import is_mark
 from watchsim.drawing.nodes import Outline
 from watchsim.geometry.loops import Inside, Loop
 from watchsim.geometry.primitives import Arc, Boxes, Line, Point
@@ -93,7 +93,7 @@ def circle_lines(loops: Iterable[Loop]) -> Iterator[str]:
     for loop in loops:
         circle = circle_of(loop)
         if circle is not None:
-            word = "pivot" if last_word(loop.layer) in MARKS else "hole" if loop.hole else "circle"
+            word = "pivot" if is_mark(loop.layer) else "hole" if loop.hole else "circle"
             off = f", drawn as {circle.sides} straight pieces, {1e6 * circle.deviation:.3g} µm off" if circle.sides else ""
             alike.setdefault((word, f"{1e3 * circle.radius:.6g}", off), []).append(circle.centre)
     shown = 0

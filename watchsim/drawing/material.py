@@ -7,6 +7,7 @@ layer of its own is taken out of the outline around it; a circle that marks a pi
 from __future__ import annotations
 
 import re
+import unicodedata
 from collections.abc import Iterable, Sequence
 
 import numpy as np
@@ -15,8 +16,24 @@ from watchsim.geometry.loops import Inside, Loop
 from watchsim.geometry.primitives import Arc, Boxes, Point
 from watchsim.geometry.solids import area
 
-BORES = frozenset(("bore", "bores", "drill", "drills", "hole", "holes"))
-MARKS = frozenset(("axes", "axis", "center", "centers", "centre", "centres", "pivot", "pivots", "drehpunkt", "achse", "axe"))
+
+def plain_word(word: str) -> str:
+    """In lower case and without accents."""
+    return "".join(one for one in unicodedata.normalize("NFKD", word.lower()) if not unicodedata.combining(one))
+
+
+def tokens(name: str) -> list[str]:
+    """The plain words of a name: "ESCAPE_WHEEL_z-1.30" has escape, wheel and z, "Steigradzähne" steigrad and zahne."""
+    split = re.sub(r"(?<=[a-zäöüéèß])(?=[A-ZÄÖÜÉ])", " ", unicodedata.normalize("NFC", name))
+    split = re.sub(COMPOUND, r"\1 ", plain_word(split))
+    return [word for word in re.split(r"[^a-z]+|(?<=[a-z])(?=wheel)", split) if word]
+
+
+COMPOUND = r"(anker(?!rad)|ankerrad|steigrad|gangrad|unruh|pendel)(?=[a-z]{3})"  # the first part of German names
+BORES = frozenset(("bore", "bores", "drill", "drills", "hole", "holes", "bohrung", "bohrungen", "loch", "locher"))
+BORES |= frozenset(("trou", "trous", "percage", "percages", "foro", "fori"))
+CENTRES = frozenset(("center", "centers", "centre", "centres", "zentrum", "mitte", "mittelpunkt", "centro"))
+MARKS = frozenset(("axes", "axis", "pivot", "pivots", "drehpunkt", "achse", "achsen", "axe", "asse", "assi", "perno", "perni"))
 INWARD = 1e-6  # of an edge: so far beside it is looked whether there is material
 
 
@@ -43,13 +60,16 @@ def layer_roles(loops: Iterable[Loop]) -> dict[str, str]:
 
 
 def _role(layer: str, only_circles: bool) -> str:
-    word = last_word(layer)
-    return "bore" if word in BORES else "mark" if word in MARKS and only_circles else "material"
+    return "bore" if _last_word(layer) in BORES else "mark" if is_mark(layer) and only_circles else "material"
 
 
-def last_word(layer: str) -> str:
-    """What a layer's name says it holds: "lever_PIVOT-2" is a pivot and "CENTER WHEEL" a wheel; in lower case."""
-    return (re.findall(r"[a-z]{3,}", layer.lower()) or [""])[-1]
+def is_mark(layer: str) -> bool:
+    """Is it named for what marks a place? "lever_PIVOT-2", "Pivot Lever" and "wheel centre" are, "CENTER WHEEL" is a wheel."""
+    return _last_word(layer) in CENTRES or any(word in MARKS for word in tokens(layer))
+
+
+def _last_word(layer: str) -> str:
+    return next((word for word in reversed(tokens(layer)) if len(word) > 2), "")
 
 
 def in_material(points: Sequence[Point], solid: Sequence[Loop]) -> list[int]:

@@ -14,8 +14,9 @@ import numpy as np
 from watchsim.geometry.primitives import Point
 from watchsim.proposal.facing import OVER, Facing
 from watchsim.proposal.parts import nose_of, toothing
-from watchsim.proposal.pieces import CLICK, DRIVER, LEVER, NONE, OSCILLATOR, SAME, WHEEL, Piece, ring
+from watchsim.proposal.pieces import NONE, SAME, Piece, ring
 from watchsim.proposal.roles import Role, first_of
+from watchsim.proposal.words import CLICK, DRIVER, LEVER, OSCILLATOR, WHEEL
 
 
 def doubts(

@@ -14,7 +14,9 @@ import numpy as np
 
 from watchsim.geometry.primitives import Point
 from watchsim.mechanism.overlap import material, placed
-from watchsim.proposal.pieces import (
+from watchsim.proposal.pieces import Floats, Piece, Region, ring, united
+from watchsim.proposal.roles import Role
+from watchsim.proposal.words import (
     CLICK,
     DRIVER,
     FIXED,
@@ -24,15 +26,9 @@ from watchsim.proposal.pieces import (
     PASSING,
     RESTING,
     WHEEL,
-    Floats,
-    Piece,
-    Region,
     facing_by_name,
-    ring,
     tokens,
-    united,
 )
-from watchsim.proposal.roles import Role
 
 SWING = math.radians(15.0)  # of a lever or click, to either side
 STEPS = 7

@@ -16,30 +16,22 @@ from numpy.typing import NDArray
 from watchsim.geometry.primitives import Point
 from watchsim.mechanism.overlap import placed
 from watchsim.proposal.pieces import (
-    CLICK,
-    FIXED,
-    LEVER,
     MANY,
     NONE,
-    OSCILLATOR,
     SURE,
     USUAL,
     WEAK,
-    WHEEL,
     Centre,
     Mark,
     Piece,
     Source,
     Turned,
     centre_of,
-    hints_of,
     holds,
     hole_of,
     is_toothed,
-    part_of,
-    part_word,
-    tokens,
 )
+from watchsim.proposal.words import CLICK, FIXED, LEVER, OSCILLATOR, WHEEL, hints_of, part_of, part_word, tokens
 
 
 @dataclass(eq=False)

@@ -1,4 +1,4 @@
-"""Which pieces of material do drawings hold, what do their names say, and about which points do they turn?
+"""Which pieces of material do drawings hold, and about which points do they turn?
 
 What is inserted as a block gets layers of its own, named after the block: scenes choose outlines by layer. A piece is an outer
 outline with its holes; equal pieces that stand around a centre, such as single teeth, are one piece.
@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import functools
 import math
-import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -22,12 +21,13 @@ from numpy.typing import NDArray
 from watchsim.drawing.circles import circle_of
 from watchsim.drawing.drawing import SNAP, Drawing
 from watchsim.drawing.findings import Content, Finding, Inserted, Stroke
-from watchsim.drawing.material import MARKS, last_word
+from watchsim.drawing.material import is_mark
 from watchsim.drawing.read import FIT, assembled, read_content
 from watchsim.geometry.loops import Loop, extents, winding
 from watchsim.geometry.primitives import Arc, Line, Point
 from watchsim.geometry.solids import area, section
 from watchsim.mechanism.overlap import chord_points, material, placed
+from watchsim.proposal.words import FIXED, part_of, shows_pivot
 from watchsim.units import known_unit
 
 CROSSING = "crossing"  # the code of a finding
@@ -36,12 +36,16 @@ LIKELY = (0.5e-3, 1.0)  # m across: a drawing without units within these is take
 
 @dataclass(frozen=True)
 class Mark:
-    """A point, or a circle on a layer named for pivots; `layer` names it alone where `single`."""
+    """A point, or a circle on a layer named for pivots; `layer` names it alone where `single`.
+
+    Of a bore or an arbor `within` is the outline in which it lies; it says nothing about others drawn over it.
+    """
 
     at: Point
     layer: str
     single: bool
     point: bool
+    within: Loop | None = None
 
 
 @dataclass(frozen=True)
@@ -56,6 +60,7 @@ class Source:
     marks: tuple[Mark, ...]
     section: float | None = None
     mended: tuple[str, ...] = ()  # what was closed so that its layer can be used
+    marking: frozenset[str] = frozenset()  # layers that show pivots and hold no material
 
     @property
     def bad_layers(self) -> frozenset[str]:
@@ -98,7 +103,8 @@ def read_source(path: Path, unit: str | None = None) -> Source:
     if len(content.inserted) > 1:
         content, blocks = _by_blocks(content)
     drawing, mended = _mended(assembled(path, ending, lambda: content, SNAP))
-    return Source(path, drawing, units, blocks, tuple(_marks(drawing)), section, tuple(mended))
+    marks, marking = _marks(drawing)
+    return Source(path, drawing, units, blocks, tuple(marks), section, tuple(mended), marking)
 
 
 OPEN = "open-outline"  # the code of a finding
@@ -173,21 +179,39 @@ def _renamed(stroke: Stroke, named: Sequence[tuple[Inserted, str]]) -> Stroke:
     return stroke if prefix is None else replace(stroke, layer=prefix if stroke.layer == "0" else f"{prefix}_{stroke.layer}")
 
 
-def _marks(drawing: Drawing) -> list[Mark]:
-    """Points, and circles on layers called pivots, axes or centres."""
-    found = [(layer, (x, y), True) for layer, x, y in drawing.points]
-    for loop in drawing.loops:
-        circle = circle_of(loop) if last_word(loop.layer) in MARKS else None
-        if circle is not None:
-            found.append((loop.layer, circle.centre, False))
-    on_layer = Counter(layer for layer, _, _ in found)
+def _marks(drawing: Drawing) -> tuple[list[Mark], frozenset[str]]:
+    """Points, and circles on layers called pivots, axes, bores or arbors; and those layers, which hold no material."""
+    circles = [(loop, circle) for loop in drawing.loops if (circle := circle_of(loop)) is not None]
+    shown = frozenset(loop.layer for loop, _ in circles if shows_pivot(loop.layer))
+    shown -= {loop.layer for loop in drawing.loops if circle_of(loop) is None and not is_mark(loop.layer)}
+    if shown >= {loop.layer for loop in drawing.loops}:
+        shown = frozenset()
+    on_layer = Counter([layer for layer, _, _ in drawing.points] + [loop.layer for loop, _ in circles])
     lines = {loop.layer for loop in drawing.loops}
-    return [Mark(at, layer, on_layer[layer] == 1 and (not point or layer not in lines), point) for layer, at, point in found]
+    points = [Mark((x, y), name, on_layer[name] == 1 and name not in lines, True) for name, x, y in drawing.points]
+    drawn = [
+        Mark(circle.centre, loop.layer, on_layer[loop.layer] == 1, False) for loop, circle in circles if loop.layer in shown
+    ]
+    axes = [mark for mark in drawn if is_mark(mark.layer)]
+    outlines = [loop for loop in drawing.loops if not loop.hole and loop.layer not in shown and part_of(loop.layer) != FIXED]
+    taken = {_around(mark, outlines) for mark in points + axes}
+    bores: dict[Loop, list[Mark]] = {}
+    for mark in drawn:
+        within = _around(mark, outlines)
+        if mark not in axes and within is not None and within not in taken:
+            bores.setdefault(within, []).append(replace(mark, within=within))
+    middles = {loop: section((loop,)).centroid for loop in bores}
+    central = [min(marks, key=lambda one: math.dist(one.at, middles[loop])) for loop, marks in bores.items()]
+    return points + axes + central, shown  # others are holes for screws
 
 
-def is_mark(layer: str) -> bool:
-    """Is a layer named for what marks a place and is no material?"""
-    return last_word(layer) in MARKS
+def _around(mark: Mark, outlines: Sequence[Loop]) -> Loop | None:
+    """The outline in which a mark lies: one about it, else the smallest; of the kind that its layer's name speaks of."""
+    kind = part_of(mark.layer)
+    fitting = (loop for loop in outlines if kind is None or part_of(loop.layer) in (kind, None))
+    sizes = {loop: abs(area(loop)) for loop in fitting if winding(loop, mark.at) != 0}
+    about = [loop for loop in sizes if math.dist(section((loop,)).centroid, mark.at) < BORED * math.sqrt(sizes[loop])]
+    return min(about or sizes, key=sizes.__getitem__, default=None)
 
 
 def size_of(drawings: Sequence[Drawing]) -> float:
@@ -253,90 +277,6 @@ def united(parts: Iterable[Region]) -> Region:
 
 def _region(rings: Sequence[Floats]) -> Region:
     return united(material([(points, False) for points in rings]))
-
-
-# What names of layers, blocks and files say, in the languages of watchmaking: English, German, French.
-
-WHEEL, LEVER, OSCILLATOR, CLICK, DRIVER, FIXED = "wheel", "lever", "oscillator", "click", "driver", "fixed"
-PASSING = "passing"  # the spring that a detent carries
-
-# Words for a part itself; a layer name that begins with one names its part.
-PARTS = {
-    **dict.fromkeys(("wheel", "rad", "gangrad", "steigrad", "ankerrad", "hemmungsrad", "roue", "gear", "pinion"), WHEEL),
-    **dict.fromkeys(("ratchet", "sperrrad", "sperrad", "rochet", "star", "stern", "étoile"), WHEEL),
-    **dict.fromkeys(("lever", "anker", "anchor", "ancre", "detent", "passing"), LEVER),
-    **dict.fromkeys(("click", "pawl", "jumper", "klinke", "sperrklinke", "sperrkegel", "raste", "cliquet", "sautoir"), CLICK),
-    **dict.fromkeys(("follower", "tappet", "rack", "fühler", "palpeur", "rechen", "râteau"), CLICK),
-    **dict.fromkeys(("cam", "came", "nocken", "kurvenscheibe", "snail", "schnecke", "limaçon"), DRIVER),
-    **dict.fromkeys(("cross", "malteserkreuz", "croix"), WHEEL),
-    **dict.fromkeys(("driver", "crank", "finger", "kurbel", "mitnehmer", "manivelle", "doigt"), DRIVER),
-    **dict.fromkeys(("balance", "unruh", "balancier", "pendulum", "pendel", "pendule", "foliot"), OSCILLATOR),
-    **dict.fromkeys(("banking", "bankings", "bank", "banks", "plate", "platine", "frame", "bridge", "wall", "stop"), FIXED),
-    **dict.fromkeys(("stops", "fixed", "ground", "base", "cock", "anschlag"), FIXED),
-}
-# Words for a feature, which hint at the part that has it.
-FEATURES = {
-    **dict.fromkeys(("escape", "scape", "teeth", "tooth", "zahn", "zaehne", "zähne", "dents"), WHEEL),
-    **dict.fromkeys(("pallet", "pallets", "stone", "stones", "fork", "horn", "horns", "dart", "guard", "arm", "arms"), LEVER),
-    **dict.fromkeys(("gabel", "stein", "steine", "hebestein", "hebesteine", "paletten", "klaue", "klauen", "messer"), LEVER),
-    **dict.fromkeys(("fourchette", "palette", "palettes", "levée", "levées", "levee", "levees", "dard"), LEVER),
-    **dict.fromkeys(("beak", "nose", "bec", "nase"), CLICK),
-    **dict.fromkeys(("roller", "table", "safety", "impulse", "jewel", "rim", "bob", "rod"), OSCILLATOR),
-    **dict.fromkeys(("hebelstein", "rolle", "sicherheitsrolle", "plateau"), OSCILLATOR),
-}
-TEETH = frozenset(("teeth", "tooth", "zahn", "zaehne", "zähne", "dents", "wheel", "gear", "pinion", "rad", "ratchet", "star"))
-STONES = frozenset(("pallet", "pallets", "stone", "stones", "stein", "steine", "palette", "palettes", "teeth", "paletten"))
-STONES |= {"hebestein", "hebesteine", "klaue", "klauen", "levée", "levées", "levee", "levees"}
-CLICKS = frozenset(("click", "pawl", "jumper", "nose", "beak", "klinke", "sperrklinke", "cliquet", "sautoir", "bec"))
-CAMS = frozenset(("cam", "came", "nocken", "kurvenscheibe", "snail", "schnecke", "limaçon"))
-PENDULUMS = frozenset(("pendulum", "pendel", "pendule", "rod", "bob"))
-ANCHORS = PENDULUMS | {"anchor", "anker", "ancre"}  # what swings a little only
-FORK = frozenset(("fork", "horn", "horns", "gabel", "fourchette"))
-PIN = frozenset(("pin", "jewel", "impulse", "hebelstein"))
-GUARD = frozenset(("dart", "guard", "messer", "dard"))
-ROLLER = frozenset(("safety", "roller", "rolle", "sicherheitsrolle", "plateau"))
-RESTING = frozenset(("resting", "repos", "ruhe"))  # the long teeth of a duplex wheel
-LEAVES = frozenset(("passing", "leaf", "goldfeder", "auslösefeder"))
-DISCHARGES = frozenset(("discharge", "discharging", "unlocking", "auslösestein", "dégagement"))
-FACING = ((LEAVES, DISCHARGES), (TEETH, STONES), (TEETH, CLICKS), (FORK, PIN), (GUARD, ROLLER), (RESTING, ROLLER))
-
-
-def tokens(name: str) -> list[str]:
-    """The words of a name in lower case: "ESCAPE_WHEEL_z-1.30" has escape, wheel and z, "SCAPEWHEEL" scape and wheel."""
-    split = re.sub(r"(?<=[a-zäöü])(?=[A-ZÄÖÜ])", " ", name).lower()
-    return [word for word in re.split(r"[^a-zäöüéè]+|(?<=[a-z])(?=wheel)", split) if word]
-
-
-def part_of(name: str) -> str | None:
-    """The kind of part that a name speaks of; None where it says nothing, or names features of two kinds."""
-    words = tokens(name)
-    named = [PARTS[word] for word in words if word in PARTS]
-    if named:
-        return named[0]
-    hinted = hints_of(name)
-    return next(iter(hinted)) if len(hinted) == 1 else None
-
-
-def hints_of(name: str) -> frozenset[str]:
-    """All kinds of part that the words of a name may belong to; empty where they say nothing."""
-    words = tokens(name)
-    named = [PARTS[word] for word in words if word in PARTS]
-    return frozenset(named[:1] or (FEATURES[word] for word in words if word in FEATURES))
-
-
-def part_word(name: str) -> str | None:
-    """What the part is called in a layer's name: "escape_wheel" of ESCAPE_WHEEL_z-1.30; None where it is not named."""
-    words = tokens(name)
-    for k, word in enumerate(words):
-        if word in PARTS:
-            return f"{words[k - 1]}_{word}" if k and FEATURES.get(words[k - 1]) == PARTS[word] else word
-    return None
-
-
-def facing_by_name(first: str, second: str) -> bool:
-    """Do the names of two surfaces say that they work together, as teeth and stones do?"""
-    a, b = set(tokens(first)), set(tokens(second))
-    return any((a & one and b & other) or (a & other and b & one) for one, other in FACING)
 
 
 DEVIATION = 2e-5  # of an outline's length: of chords from arcs
@@ -492,6 +432,7 @@ class Centre:
 
 def centre_of(piece: Piece, marks: Sequence[Mark]) -> Centre | None:
     """The centre that a piece shows: a mark with arcs about it, its own symmetry, the one mark in it, or its hole."""
+    marks = [mark for mark in marks if mark.within is None or mark.within in piece.loops]
     shares = [(sum(arc.length for arc in piece.arcs if math.dist((arc.x, arc.y), mark.at) <= SAME), mark) for mark in marks]
     best = max(shares, key=lambda pair: pair[0], default=(0.0, None))
     symmetry = piece.turned

@@ -14,13 +14,15 @@ from pathlib import Path
 from typing import Any
 
 from watchsim.drawing.drawing import Drawing
+from watchsim.drawing.material import is_mark
 from watchsim.mechanism.overlap import overlaps
 from watchsim.proposal.doubts import doubts
 from watchsim.proposal.facing import Facing, facings, named_facings
 from watchsim.proposal.parts import parts_of
-from watchsim.proposal.pieces import CLICK, DRIVER, OSCILLATOR, WHEEL, Piece, Source, is_mark, pieces_of, read_sources, size_of
+from watchsim.proposal.pieces import Piece, Source, pieces_of, read_sources, size_of
 from watchsim.proposal.roles import Role, apart, first_of, lean_of, roles_of
 from watchsim.proposal.start import PIVOT, Amounts, Drawn, Start, amounts_of, drawn, side_by_side, start_of
+from watchsim.proposal.words import CLICK, OSCILLATOR, WHEEL
 from watchsim.scene.errors import SceneError
 from watchsim.scene.load import load
 from watchsim.scene.scene import Scene
@@ -89,7 +91,7 @@ def scene_text(plan: Plan) -> str:
         f"# Proposed from {names}. What is a guess says so, and why: put right what you know better, then",
         "# `watchsim check`, `watchsim check --png start.png` and `watchsim run` say what comes of it.",
         *(f"# Left out: {words}" for words in plan.left_out),
-        *(f"# Doubtful: {words}." for words in plan.doubts),
+        *map(_doubt, plan.doubts),
         "",
         "[scene]",
         f"title  = {_text(plan.title)}",
@@ -109,6 +111,10 @@ def scene_text(plan: Plan) -> str:
         lines += [plan.guess("timegrapher.lift_angle", _text(f"{math.degrees(lift.value):.3g}°"), lift.why)]
     lines += ["", "[run]", plan.guess("run.duration", _text(DURATION), "long enough to see whether it works")]
     return "\n".join(lines) + "\n"
+
+
+def _doubt(words: str) -> str:
+    return f"# Doubtful: {words}."
 
 
 def _body(plan: Plan, role: Role) -> Iterator[str]:
@@ -269,8 +275,14 @@ class Proposal:
     either_way: bool = False  # nothing in the drawing says which way its wheel turns
     way: int = -1  # in which it is driven, +1 counter-clockwise
 
+    def doubting(self, doubts: Sequence[str]) -> Proposal:
+        """The same with more doubts, which stand at the top of the scene as well."""
+        head, rest = self.files[SCENE].split(b"\n\n", 1)
+        scene = b"\n".join([head, *(_doubt(words).encode() for words in doubts)]) + b"\n\n" + rest
+        return replace(self, files={**self.files, SCENE: scene}, doubts=(*self.doubts, *doubts))
 
-def propose(paths: Sequence[Path], way: int = 0) -> Proposal:
+
+def propose(paths: Sequence[Path], way: int = 0, because: str = "") -> Proposal:
     """A scene from drawings of parts, or of a whole assembly; `way` (±1) is how the wheel turns, whatever its teeth say.
 
     NothingToPropose where there is no closed outline, or where outlines have faults that no scene takes.
@@ -285,7 +297,7 @@ def propose(paths: Sequence[Path], way: int = 0) -> Proposal:
     met, others = (named_facings(roles), []) if places else facings(roles, size)
     met = met or named_facings(roles)  # of a layout for cutting
     unlikely = [(facing, "the names of other surfaces of these bodies fit better") for facing in others]
-    lean, why = _direction(first_of(roles, WHEEL), {role.task for role in roles}, way)
+    lean, why = _direction(first_of(roles, WHEEL), {role.task for role in roles}, way, because)
     start = start_of(roles, () if places else met, lean or -1)
     amounts = amounts_of(roles, size, start.swing, met)
     title = ", ".join(path.stem for path in paths)
@@ -303,9 +315,9 @@ def propose(paths: Sequence[Path], way: int = 0) -> Proposal:
         kept = [facing for k, facing in enumerate(plan.facings) if k not in wrong]
         gone = [(facing, "they overlap at the start") for k, facing in enumerate(plan.facings) if k in wrong]
         plan = replace(plan, facings=kept, others=[*plan.others, *gone], guesses=[])
-    meets = any(not facing.by_name_alone for facing in plan.facings)
+    meets = any(facing.first.moves and facing.second.moves and not facing.by_name_alone for facing in plan.facings)
     sides = tuple((plan.side(*facing.sides[0]), plan.side(*facing.sides[1])) for facing in plan.facings)
-    either = not way and why == UNKNOWN_WAY and any(role.task in (OSCILLATOR, DRIVER) for role in roles)
+    either = not way and why == UNKNOWN_WAY
     return Proposal(
         files, tuple(plan.guesses), tuple(roles), sides, tuple(left_out), tuple(plan.doubts), meets, either, plan.direction
     )
@@ -316,7 +328,7 @@ def _pieces(sources: Sequence[Source]) -> tuple[list[Piece], list[str]]:
     left_out: list[str] = []
     for number, source in enumerate(sources):
         bad = source.bad_layers
-        loops = [loop for loop in source.drawing.loops if loop.layer not in bad and not is_mark(loop.layer)]
+        loops = [loop for loop in source.drawing.loops if loop.layer not in bad | source.marking]
         pieces += pieces_of(number, loops, source.crowded)
         left_out += [f"layer {layer} of {source.path.name}: {_fault(source.drawing, layer)}" for layer in sorted(bad)]
     if not pieces:
@@ -346,13 +358,13 @@ def _why_nothing(sources: Sequence[Source]) -> str:
 UNKNOWN_WAY = "clockwise: the drawing does not say which way it is driven"
 
 
-def _direction(wheel: Role | None, tasks: set[str], tried: int) -> tuple[int, str]:
+def _direction(wheel: Role | None, tasks: set[str], tried: int, because: str) -> tuple[int, str]:
     """Which way the wheel is driven, 0 where the drawing does not say, and why: a click lets it turn against its teeth."""
     lean = lean_of(wheel.part) if wheel is not None else 0
     if tried:
         words = "clockwise" if tried < 0 else "counter-clockwise"
         says = "the tips of the teeth lean the other way, but" if lean else "the drawing does not say;"
-        return tried, f"{words}: {says} tried both ways, it works this way only"
+        return tried, f"{words}: {says} {because}"
     if not lean:
         return 0, UNKNOWN_WAY
     held = CLICK in tasks and OSCILLATOR not in tasks

@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 
 from watchsim.geometry.primitives import Point
 from watchsim.proposal.parts import Part, distance, is_one_sided, teeth_of
-from watchsim.proposal.pieces import (
+from watchsim.proposal.pieces import SAME, Floats, is_toothed
+from watchsim.proposal.words import (
     ANCHORS,
     CAMS,
     CLICK,
@@ -25,10 +26,7 @@ from watchsim.proposal.pieces import (
     LEVER,
     OSCILLATOR,
     PASSING,
-    SAME,
     WHEEL,
-    Floats,
-    is_toothed,
     part_of,
     part_word,
     tokens,

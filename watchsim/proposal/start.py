@@ -21,21 +21,9 @@ from watchsim.geometry.solids import section
 from watchsim.mechanism.overlap import placed
 from watchsim.proposal.facing import Facing, clearance, turns_fully
 from watchsim.proposal.parts import Part, nose_of, toothing
-from watchsim.proposal.pieces import (
-    CLICK,
-    DRIVER,
-    LEVER,
-    OSCILLATOR,
-    PASSING,
-    PENDULUMS,
-    WHEEL,
-    Floats,
-    Piece,
-    Source,
-    ring,
-    tokens,
-)
+from watchsim.proposal.pieces import Floats, Piece, Source, ring
 from watchsim.proposal.roles import Role, first_of, plain
+from watchsim.proposal.words import CLICK, DRIVER, LEVER, OSCILLATOR, PASSING, PENDULUMS, WHEEL, tokens
 
 STEEL = 7850.0  # kg/m³
 GRAVITY = 9.81  # m/s²
@@ -46,8 +34,7 @@ BEATS = {True: 28800.0, False: 7200.0}  # vph
 Q_FACTOR = {True: 250.0, False: 1000.0}
 SHARE = 0.35  # of the drive's work that reaches the oscillator: usual for a lever escapement
 LIGHT = 30.0  # times the lever's inertia: a balance with less is drawn without its rim
-HEAVY = 100.0  # times the wheel's inertia: an anchor with less is drawn without its pendulum or balance
-WHOLE = {True: 100.0, False: 1e4}  # times the wheel's inertia, with the balance of a watch, the pendulum of a clock
+KEEPS_UP = 5.0  # times the torque by which the wheel just follows the pallets: with less the swing pushes the wheel on
 STEPPED = 8  # teeth: a wheel with fewer is driven step by step, as in a Geneva drive
 LIFTING = 0.2  # of the drive's work that lifts a click
 BENT = 0.5  # rad by which the spring of a click is bent at the start: its force hardly changes
@@ -98,8 +85,10 @@ def amounts_of(roles: Sequence[Role], size: float, swing: float, met: Sequence[F
     plate = f"its outlines as steel {1e3 * thick:g} mm thick"
     inertia = {role.name: Amount(_plate(role.part, thick), plate) for role in roles if role.moves}
     wheel, lever, swinging = (first_of(roles, task) for task in (WHEEL, LEVER, OSCILLATOR))
+    between = any({facing.first.task, facing.second.task} == {WHEEL, LEVER} for facing in met)
+    lift = _lift(swinging, wheel) if swinging is not None and wheel is not None and not between else None
     if swinging is not None:
-        inertia[swinging.name] = _oscillators(inertia, swinging, lever, wheel, WHOLE[watch])
+        inertia[swinging.name] = _oscillators(inertia, swinging, lever, wheel, lift, Q_FACTOR[watch])
     driven = _driven(roles, wheel, swinging)
     clicks = any(role.task == CLICK for role in roles)
     turned = driven if clicks and any(role.task == DRIVER and role.name == driven for role in roles) else None
@@ -126,8 +115,6 @@ def amounts_of(roles: Sequence[Role], size: float, swing: float, met: Sequence[F
         value = loss / (SHARE * 2.0 * math.pi / wheel.teeth)
         why = f"it makes up for what the {swinging.name} loses at {math.degrees(swing):.3g}°, {SHARE:.0%} of it reaching it"
         torque_amount = Amount(value, why)
-    between = any({facing.first.task, facing.second.task} == {WHEEL, LEVER} for facing in met)
-    lift = _lift(swinging, wheel) if wheel is not None and not between else None
     carried = {role.name: Amount(STEEL * thick * role.part.area, plate) for role in roles if role.on is not None}
     springs = _detent_springs(roles, met, torque_amount.value) if torque_amount is not None else ()
     return Amounts(inertia, beats, q, torque_amount, None, driven, springs, lift, carried)
@@ -229,13 +216,24 @@ def _plate(part: Part, thickness: float) -> float:
     return sum(abs(section(piece.loops).about(centre).polar) for piece in part.pieces) * thickness * STEEL
 
 
-def _oscillators(inertia: dict[str, Amount], swinging: Role, lever: Role | None, wheel: Role | None, whole: float) -> Amount:
+def _oscillators(
+    inertia: dict[str, Amount], swinging: Role, lever: Role | None, wheel: Role | None, lift: Amount | None, q: float
+) -> Amount:
+    """As drawn; where that is too little with a balance or pendulum that is not drawn.
+
+    An oscillator I loses π I (ω A)² / Q in a beat, of which the torque makes up. Within the time lift / (ω A) of an impulse it
+    must turn a wheel J by half a pitch, or the wheel comes too late to push. So I is at least J pitch² Q / lift², about.
+    """
     own = inertia[swinging.name]
     light = "what is drawn is too light to be all of it"
     if lever is not None and own.value < LIGHT * inertia[lever.name].value:
         return Amount(max(BALANCE, LIGHT * inertia[lever.name].value), f"a balance's; {light}")
-    if lever is None and wheel is not None and own.value < HEAVY * inertia[wheel.name].value:
-        return Amount(whole * inertia[wheel.name].value, f"with its pendulum or balance; {light}")
+    if lever is None and wheel is not None and wheel.teeth and lift is not None:
+        share = (2.0 * math.pi / wheel.teeth / lift.value) ** 2
+        least = KEEPS_UP * SHARE * q / math.pi * share * inertia[wheel.name].value
+        if own.value < least:
+            heavy = f"so heavy that the torque that it needs makes {wheel.name} keep up with it"
+            return Amount(least, f"with its pendulum or balance, {heavy}; {light}")
     return own
 
 

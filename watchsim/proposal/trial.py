@@ -6,7 +6,6 @@ import math
 import tempfile
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,45 +13,72 @@ import numpy as np
 
 from watchsim.analysis.summary import summary
 from watchsim.analysis.verdict import verdict
-from watchsim.proposal.pieces import OSCILLATOR
-from watchsim.proposal.propose import Proposal, propose
+from watchsim.escapement.measure import measure
+from watchsim.proposal.propose import SCENE, Proposal, propose
+from watchsim.proposal.words import CLICK, DRIVER, OSCILLATOR, WHEEL
 from watchsim.scene.load import load
-from watchsim.scene.roles import frequency, pitch, swings
+from watchsim.scene.roles import frequency, swings
+from watchsim.scene.scene import Scene
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.trajectory import Trajectory
 
 SECONDS, PERIODS = 3.0, 6.0  # at least: over the last three periods the work of the wheel is counted
 LONGER = 60.0  # where the wheel brakes at first, as a swing does that is too large
 PATIENCE = 10.0  # s of processor time: a mechanism that takes longer to compute is left to its user
+ON = 0.9  # of a pitch: a wheel that goes on by less in all that time stands
 STILL = 1e-6  # rad or m: what moves less in all that time does not move
+BY_TRIAL = "tried both ways, it works this way only"
+BY_FUNCTION = "only this way do its teeth lock and drive, as check --turn measures them"
 
 
 def tried(paths: Sequence[Path]) -> Proposal:
     """What drawings suggest, with what a run of it shows among the doubts.
 
-    The wheel turns the way in which it works where nothing says which way it turns, or where it does not work the way that its
-    teeth lean, as those of a cylinder escapement, whose tips trail. NothingToPropose as for `propose`.
+    Where nothing says which way the wheel turns, or it does not work the way that its teeth lean, as those of a cylinder
+    escapement, whose tips trail, it turns the way in which its function can be measured, else the way in which it works: a
+    trial has guessed inertias and torques, a measurement has none. NothingToPropose as for `propose`.
     """
     found = propose(paths)
     if not found.meets:
         return found
-    wrong, drives = _run(found.files)
-    works = drives and not wrong
-    if found.either_way or (not works and any(role.task == OSCILLATOR for role in found.roles)):
-        other = propose(paths, -found.way)
-        wrong_there, drives_there = _run(other.files)
-        if works != (drives_there and not wrong_there):
-            return other if not works else propose(paths, found.way)
-    return replace(found, doubts=(*found.doubts, *wrong))
+    faults, works = _run(found)
+    if not {role.task for role in found.roles} & {OSCILLATOR, DRIVER, CLICK} or (works and not found.either_way):
+        return found.doubting(faults)
+    other = propose(paths, -found.way)
+    faults_there, works_there = _run(other)
+    here, there = (_is_measured(found), works), (_is_measured(other), works_there)
+    if here == there:
+        return found.doubting(faults)
+    by_function, leans = here[0] != there[0], not found.either_way
+    if there > here or not leans:
+        found = propose(paths, (other if there > here else found).way, BY_FUNCTION if by_function else BY_TRIAL)
+        faults = faults_there if there > here else faults
+    if by_function and faults:
+        faults.append(f"{BY_FUNCTION}: other inertias or another torque may mend what the trial shows")
+    elif there > here and leans and not by_function and any(role.little for role in found.roles):
+        faults.append(f"against the lean of the teeth, {BY_TRIAL}, with inertias and a torque that are guesses")
+    return found.doubting(faults)
 
 
 class _TakesLong(Exception):
     pass
 
 
-def _run(files: Mapping[str, bytes]) -> tuple[list[str], bool]:
-    """Sentences on what does not work in the first seconds of the scene among those files, none where all does, and whether the
-    wheel drives the oscillator, which it may not do though it ticks, or is driven on by a tooth."""
+def _is_measured(found: Proposal) -> bool:
+    """Do both pallets lock teeth, lift, and let them drop?"""
+    with tempfile.TemporaryDirectory() as folder:
+        return measure(_loaded(found, Path(folder)), few=1, fork_too=False).pallets is not None
+
+
+def _loaded(found: Proposal, folder: Path) -> Scene:
+    for name, data in found.files.items():
+        (folder / name).write_bytes(data)
+    return load(folder / SCENE)
+
+
+def _run(found: Proposal) -> tuple[list[str], bool]:
+    """Sentences on what does not work in the first seconds of the scene, none where all does, and whether it works: the wheel
+    drives the oscillator, which it may not do though it ticks, or is driven on by a tooth."""
     began = time.process_time()
 
     def progress(_now: float, _end: float) -> None:
@@ -60,9 +86,7 @@ def _run(files: Mapping[str, bytes]) -> tuple[list[str], bool]:
             raise _TakesLong
 
     with tempfile.TemporaryDirectory() as folder:
-        for name, data in files.items():
-            (Path(folder) / name).write_bytes(data)
-        scene = load(Path(folder) / "scene.toml")
+        scene = _loaded(found, Path(folder))
         try:
             seconds = max(SECONDS, PERIODS / (frequency(scene) or math.inf))
             run = simulate(scene, seconds, progress=progress, to_the_end=False)
@@ -71,20 +95,19 @@ def _run(files: Mapping[str, bytes]) -> tuple[list[str], bool]:
         except _TakesLong:
             return [f"a trial of {seconds:.3g} s takes long and was broken off: whether it works is not known"], False
     numbers = summary(run)
-    return list(_wrong(run, numbers)), (numbers["efficiency"] or 0.0) > 0.0 or _fall_back(run) == []
+    faults = list(_wrong(run, numbers, found))
+    stepped = _stepped(found)
+    return faults, not faults and ((numbers["efficiency"] or 0.0) > 0.0 or bool(stepped))
 
 
-def _fall_back(run: Trajectory) -> list[str] | None:
-    """The toothed bodies that a driven one carries on by no tooth, since they fall back; None without such bodies."""
-    pivoted = [body for body in run.scene.bodies if body.motion in ("pivot", "driven") and body.geared is None]
-    toothed = [(body.name, pitch(run.scene, body.name)) for body in pivoted if body.prescribed is None]
-    found = [(name, one) for name, one in toothed if one]
-    if not found or len(toothed) == len(pivoted):
-        return None
-    return [name for name, one in found if np.ptp(run.q[[0, -1], run.slices[name].start]) < 0.9 * one]
+def _stepped(found: Proposal) -> list[str]:
+    """The toothed wheels that go on tooth by tooth, moved by a body that turns evenly, or held by a click."""
+    tasks = {role.task for role in found.roles}
+    stepwise = OSCILLATOR not in tasks and (CLICK in tasks or b'motion = "driven"' in found.files[SCENE])
+    return [role.name for role in found.roles if role.task == WHEEL and role.teeth and stepwise]
 
 
-def _wrong(run: Trajectory, found: Mapping[str, Any]) -> Iterator[str]:
+def _wrong(run: Trajectory, found: Mapping[str, Any], proposal: Proposal) -> Iterator[str]:
     tried, judged = f"in a trial of {run.simulated:.3g} s", verdict(run)
     if not judged.works:
         yield f"{tried} it does not work: {judged.message}"
@@ -96,10 +119,15 @@ def _wrong(run: Trajectory, found: Mapping[str, Any]) -> Iterator[str]:
         return
     if (share := found["efficiency"]) is not None and share < 0.0:
         yield f"{tried} the wheel drives nothing: it takes more from the swing than it gives. Try more torque"
-    if back := _fall_back(run):
-        yield f"{tried} {' and '.join(back)} is moved, and falls back each time: nothing carries it on by a tooth"
-    still = [
-        body.name for body in run.scene.bodies if body.name in run.slices and np.ptp(run.q[:, run.slices[body.name]]) < STILL
-    ]
+    still = [name for name, place in run.slices.items() if np.ptp(run.q[:, place]) < STILL]
     if still:
         yield f"{tried} {' and '.join(still)} never {'moves' if len(still) == 1 else 'move'}"
+    for role in (role for role in proposal.roles if role.name in _stepped(proposal) and role.name not in still):
+        if np.ptp(run.q[[0, -1], run.slices[role.name].start]) < ON * math.tau / role.teeth:
+            driven = any(torque.body == role.name for torque in run.scene.torques)
+            why = (
+                "stands: its torque does not carry it on"
+                if driven
+                else "is moved, and falls back each time: nothing carries it on"
+            )
+            yield f"{tried} {role.name} {why} by a tooth"

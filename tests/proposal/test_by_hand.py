@@ -1,0 +1,101 @@
+"""Drawings of strangers run the right way, or a doubt says that they do not."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from proposal.escapements_by_hand import Anchor, star_and_jumper
+
+from watchsim.cli import main
+from watchsim.proposal import start
+from watchsim.proposal.propose import propose
+from watchsim.proposal.trial import tried
+from watchsim.proposal.words import shows_pivot
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_a_dead_beat_anchor_ticks_the_way_its_teeth_lock(
+    mirrored: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A wheel too heavy for its torque was once driven on by the swing, and turned the wrong way for it."""
+    path = Anchor(mirrored=mirrored).draw(tmp_path / "anchor.dxf")
+    assert main(["new", str(path), "-o", str(tmp_path / "out"), "--json"]) == 0
+    said = json.loads(capsys.readouterr().out)
+    assert said["doubts"] == []
+    assert [(body["name"], body["teeth"]) for body in said["bodies"]] == [("steigrad", 24), ("anchor", None)]
+    torque = next(guess["value"] for guess in said["guesses"] if guess["key"] == "torques.0.value")
+    assert torque.startswith('"-') != mirrored
+    assert main(["check", str(tmp_path / "out"), "--json"]) == 0
+    statics = json.loads(capsys.readouterr().out)["statics"]
+    assert statics["direction"] == ("counter-clockwise" if mirrored else "clockwise")
+    assert statics["entry"]["lift_deg"] == pytest.approx(1.5, abs=0.05)  # of the drawn 2°, of which 0.5° are for the lock
+    assert main(["run", str(tmp_path / "out"), "--duration", "10 s", "-o", str(tmp_path / "run"), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["amplitude_deg"] == pytest.approx(4.0, abs=0.3)  # as guessed
+
+
+def test_what_is_measured_decides_against_what_a_guess_runs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """With a balance too light for its wheel the trial works the wrong way only."""
+    monkeypatch.setattr(start, "KEEPS_UP", 0.06)
+    path = Anchor().draw(tmp_path / "anchor.dxf")
+    assert main(["new", str(path), "-o", str(tmp_path / "out"), "--json"]) == 0
+    said = json.loads(capsys.readouterr().out)
+    assert next(guess["value"] for guess in said["guesses"] if guess["key"] == "torques.0.value").startswith('"-')
+    assert any("only this way do its teeth lock and drive" in words for words in said["doubts"])
+    assert_at_the_top(tmp_path / "out" / "scene.toml", said["doubts"])
+
+
+def assert_at_the_top(scene: Path, doubts: list[str]) -> None:
+    head = scene.read_text(encoding="utf-8").split("\n\n")[0].splitlines()
+    assert [line for line in head if line.startswith("# Doubtful")] == [f"# Doubtful: {words}." for words in doubts]
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_a_star_turns_the_way_in_which_its_jumper_lets_it(mirrored: bool, tmp_path: Path) -> None:
+    found = tried([star_and_jumper(tmp_path / "star.svg", mirrored=mirrored)])
+    assert (found.way, found.doubts) == (-1 if mirrored else 1, ())
+
+
+CAM = """<svg xmlns="http://www.w3.org/2000/svg" width="40mm" height="40mm" viewBox="0 0 40 40">
+<path id="CAM" d="M 14.532 23.530 A 6 6 0 1 0 25.468 23.530 L 22.279 16.471 A 2.5 2.5 0 0 0 17.721 16.471 Z"/>
+<circle id="CAM_PIVOT" cx="20" cy="26" r="0.8"/>
+<rect id="FOLLOWER" x="14" y="12" width="12" height="1.5"/><rect id="STEM" x="19" y="4" width="2" height="8"/></svg>"""
+
+
+def test_doubts_do_not_contradict_each_other_and_stand_at_the_top(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A follower that its cam cannot reach was said to fall back each time, and never to move."""
+    (tmp_path / "cam.svg").write_text(CAM, encoding="utf-8")
+    assert main(["new", str(tmp_path / "cam.svg"), "-o", str(tmp_path / "out"), "--json"]) == 0
+    doubts = json.loads(capsys.readouterr().out)["doubts"]
+    assert ["never come within reach" in words for words in doubts] == [True, False]
+    assert "falls back" not in "".join(doubts) and "never move" not in "".join(doubts)
+    assert_at_the_top(tmp_path / "out" / "scene.toml", doubts)
+
+
+PIVOTS = [
+    ("Welle Rad", "Welle Anker"),
+    ("Radbohrung", "Ankerbohrung"),
+    ("Bohrung", "Bohrung"),
+    ("Pivot Wheel", "Pivot Lever"),
+    ("axe de la roue", "axe d'ancre"),
+    ("TROU", "PERÇAGE"),
+    ("Arbor 1", "Arbor 2"),
+    ("foro ruota", "asse ancora"),
+]
+
+
+@pytest.mark.parametrize(("wheel", "anchor"), PIVOTS)
+def test_arbors_and_bores_show_pivots_in_any_language_and_order(wheel: str, anchor: str, tmp_path: Path) -> None:
+    layers = ("Zähne", wheel, "Klauen", anchor, "Anker")
+    found = propose([Anchor(layers=layers).draw(tmp_path / "anchor.dxf")])
+    assert found.doubts == ()
+    places = [role.part.centre.at for role in found.roles if role.part.centre is not None]
+    assert [tuple(round(1e3 * value, 3) for value in place) for place in places] == [(0.0, 0.0), (0.0, 15.167)]
+
+
+@pytest.mark.parametrize("name", ["CENTER WHEEL", "roue de centre dents", "ANKER", "Speichen", "whole", "pivoted detent"])
+def test_other_names_show_none(name: str) -> None:
+    assert not shows_pivot(name)

@@ -1,0 +1,100 @@
+"""What do the names of layers, blocks and files say, in the languages of watchmaking: English, German, French, Italian?
+
+Accents count for nothing: ZÄHNE, ZAHNE and zähne are one word.
+"""
+
+from __future__ import annotations
+
+from watchsim.drawing.material import BORES, CENTRES, MARKS, plain_word, tokens
+
+WHEEL, LEVER, OSCILLATOR, CLICK, DRIVER, FIXED = "wheel", "lever", "oscillator", "click", "driver", "fixed"
+PASSING = "passing"  # the spring that a detent carries
+
+
+def _words(text: str) -> frozenset[str]:
+    return frozenset(plain_word(text).split())
+
+
+# Words for a part itself; a layer name that begins with one names its part.
+_PARTS = {
+    WHEEL: "wheel gear pinion ratchet star cross rad gangrad steigrad ankerrad hemmungsrad hemmrad sperrrad sperrad stern "
+    "trieb malteserkreuz roue rochet étoile pignon croix ruota stella pignone croce",
+    LEVER: "lever anchor detent passing anker hemmstück hebel ancre détente bascule ancora leva",
+    CLICK: "click pawl jumper follower tappet rack klinke sperrklinke sperrkegel raste springer fühler rechen cliquet sautoir "
+    "palpeur râteau nottolino cricco cricchetto saltarello scatto",
+    DRIVER: "driver crank finger cam snail kurbel mitnehmer nocken kurvenscheibe schnecke manivelle doigt came limaçon "
+    "manovella dito camma chiocciola",
+    OSCILLATOR: "balance pendulum foliot unruh unruhe pendel schwinger balancier pendule bilanciere pendolo",
+    FIXED: "banking bankings bank banks plate frame bridge wall stop stops fixed ground base cock anschlag anschläge platine "
+    "brücke kloben gestell pont coq butée butées étoqueau étoqueaux platina ponte arresto arresti",
+}
+# Words for a feature, which hint at the part that has it.
+_FEATURES = {
+    WHEEL: "escape scape teeth tooth zahn zaehne zähne dents dent échappement denti dente scappamento",
+    LEVER: "pallet pallets stone stones fork horn horns dart guard arm arms gabel stein steine hebestein hebesteine paletten "
+    "klaue klauen messer arme hörner fourchette palette palettes levée levées dard bras cornes forchetta leve dardo bracci",
+    CLICK: "beak nose bec nase becco",
+    OSCILLATOR: "roller table safety impulse jewel rim bob rod hebelstein rolle sicherheitsrolle reif plateau ellipse cheville "
+    "serge tige lentille disco ellisse",
+}
+PARTS = {word: kind for kind, text in _PARTS.items() for word in _words(text)}
+FEATURES = {word: kind for kind, text in _FEATURES.items() for word in _words(text)}
+TEETH = _words("teeth tooth wheel gear pinion ratchet star zahn zaehne zähne rad steigrad dents roue étoile denti ruota stella")
+STONES = _words(
+    "pallet pallets stone stones teeth stein steine paletten hebestein hebesteine klaue klauen palette palettes levée"
+)
+STONES |= _words("levées leve")
+CLICKS = _words("click pawl jumper nose beak klinke sperrklinke raste cliquet sautoir bec nottolino saltarello becco")
+CAMS = _words("cam snail nocken kurvenscheibe schnecke came limaçon camma chiocciola")
+PENDULUMS = _words("pendulum rod bob pendel pendule tige lentille pendolo")
+ANCHORS = PENDULUMS | _words("anchor anker hemmstück ancre ancora")  # what swings a little only
+FORK = _words("fork horn horns gabel hörner fourchette cornes forchetta")
+PIN = _words("pin jewel impulse hebelstein cheville ellipse ellisse")
+GUARD = _words("dart guard messer dard dardo")
+ROLLER = _words("safety roller rolle sicherheitsrolle plateau disco")
+RESTING = _words("resting repos ruhe riposo")  # the long teeth of a duplex wheel
+LEAVES = _words("passing leaf goldfeder auslösefeder")
+DISCHARGES = _words("discharge discharging unlocking auslösestein dégagement")
+FACING = ((LEAVES, DISCHARGES), (TEETH, STONES), (TEETH, CLICKS), (FORK, PIN), (GUARD, ROLLER), (RESTING, ROLLER))
+# A circle on a layer so called shows where a part turns: its axis, its bore or the arbor in it.
+ARBORS = _words("arbor arbour staff shaft spindle welle arbre albero")
+TURNING = MARKS | BORES | ARBORS
+COMPOUNDS = ("achse", "welle", "bohrung", "loch", "drehpunkt")  # in which German names end
+
+
+def shows_pivot(name: str) -> bool:
+    """Does a name say so? In any order, but for words such as that of CENTER WHEEL."""
+    words = tokens(name)
+    return any(word in TURNING or word.endswith(COMPOUNDS) for word in words) or (bool(words) and words[-1] in CENTRES)
+
+
+def part_of(name: str) -> str | None:
+    """The kind of part that a name speaks of; None where it says nothing, or names features of two kinds."""
+    words = tokens(name)
+    named = [PARTS[word] for word in words if word in PARTS]
+    if named:
+        return named[0]
+    hinted = hints_of(name)
+    return next(iter(hinted)) if len(hinted) == 1 else None
+
+
+def hints_of(name: str) -> frozenset[str]:
+    """All kinds of part that the words of a name may belong to; empty where they say nothing."""
+    words = tokens(name)
+    named = [PARTS[word] for word in words if word in PARTS]
+    return frozenset(named[:1] or (FEATURES[word] for word in words if word in FEATURES))
+
+
+def part_word(name: str) -> str | None:
+    """What the part is called in a layer's name: "escape_wheel" of ESCAPE_WHEEL_z-1.30; None where it is not named."""
+    words = tokens(name)
+    for k, word in enumerate(words):
+        if word in PARTS:
+            return f"{words[k - 1]}_{word}" if k and FEATURES.get(words[k - 1]) == PARTS[word] else word
+    return None
+
+
+def facing_by_name(first: str, second: str) -> bool:
+    """Do the names of two surfaces say that they work together, as teeth and stones do?"""
+    a, b = set(tokens(first)), set(tokens(second))
+    return any((a & one and b & other) or (a & other and b & one) for one, other in FACING)
