@@ -39,7 +39,7 @@ def test_what_is_measured_decides_against_what_a_guess_runs(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """With a balance too light for its wheel the trial works the wrong way only."""
-    monkeypatch.setattr(start, "KEEPS_UP", 0.06)
+    monkeypatch.setattr(start, "KEEPS_UP", 0.03)
     path = Anchor().draw(tmp_path / "anchor.dxf")
     assert main(["new", str(path), "-o", str(tmp_path / "out"), "--json"]) == 0
     said = json.loads(capsys.readouterr().out)
