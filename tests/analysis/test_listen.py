@@ -21,14 +21,18 @@ FS = 48000
 
 
 def ticking(vph, seconds=20.0, beat_error=0.0, interval=7e-3, rate=0.0, noise=0.0, jitter=0.0, seed=1, hum=0.0):
-    """A clock with three noises a beat, of tones that die away, each at its own instant; hum and white noise."""
+    """A clock with three noises a beat, of tones that die away, each at its own instant; hum and white noise. Rate and interval
+    may be pairs, from what to what they go."""
     random = np.random.default_rng(seed)
-    half = 3600.0 / vph / (1.0 + rate / 86400.0)
     t = np.arange(round(seconds * FS)) / FS
     signal = hum * np.sin(2.0 * np.pi * 50.0 * t) + noise * random.standard_normal(len(t))
-    for k in range(int(seconds / half)):
-        begin = 0.3 * half + k * half + (beat_error if k % 2 else 0.0) + jitter * random.standard_normal()
-        for at, loud, hertz in ((0.0, 0.6, 4100.0), (0.45 * interval, 0.3, 5200.0), (interval, 1.0, 3600.0)):
+    count = int(seconds * vph / 3600.0)
+    rates, intervals = (np.linspace(*(one if isinstance(one, tuple) else (one, one)), count) for one in (rate, interval))
+    halves = 3600.0 / vph / (1.0 + rates / 86400.0)
+    starts = 0.3 * halves[0] + np.cumsum(halves) - halves[0]
+    for k, last in enumerate(intervals.tolist()):
+        begin = starts[k] + (beat_error if k % 2 else 0.0) + jitter * random.standard_normal()
+        for at, loud, hertz in ((0.0, 0.6, 4100.0), (0.45 * last, 0.3, 5200.0), (last, 1.0, 3600.0)):
             first = int(np.ceil((begin + at) * FS))
             tail = t[first : first + 400] - (begin + at)
             signal[first : first + 400] += loud * np.exp(-tail / 0.7e-3) * np.sin(2.0 * np.pi * hertz * tail)
@@ -98,6 +102,53 @@ def test_our_own_sound_says_what_its_run_did(swiss):
     paper = heard.tape
     assert np.nanmean(paper.rate_s_per_d) == pytest.approx(heard.rate_s_per_d, abs=0.5)
     assert len(paper.t) == len(heard.t) and abs(paper.gain_ms).max() < 5.0
+
+
+RUNNING_DOWN = {"rate": (-1.0, -7.0), "interval": (7.6e-3, 8.9e-3)}
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.1, 0.3])
+def test_a_watch_that_runs_down_is_said_to(noise):
+    """From 270° to 233°, as the amplitude follows from the interval; the rate that is stated holds all of its way."""
+    heard = heard_in(ticking(28800, 20.0, 0.4e-3, noise=noise, jitter=20e-6, **RUNNING_DOWN))
+    assert heard.rate_s_per_d == pytest.approx(-4.0, abs=0.5) and heard.rate_change_s_per_d == pytest.approx(-6.0, abs=1.0)
+    assert 2.4 < heard.rate_s_per_d_error < 3.6
+    first, last = (52.0 / (2.0 * math.sin(math.pi * interval / 0.25)) for interval in RUNNING_DOWN["interval"])
+    assert heard.amplitude_change_deg == pytest.approx(last - first, abs=5.0)
+
+
+@pytest.mark.parametrize(
+    ("rate", "interval", "noise"),
+    [((-6.0, -6.0), (7e-3, 7e-3), 0.1), ((-6.0, -6.0), (7e-3, 7e-3), 0.3), ((-4.0, -5.0), (7e-3, 7.1e-3), 0.3)],
+)
+def test_the_interval_of_the_rate_is_honest(rate, interval, noise):
+    """Of a settled watch it is the standard error, and no drift is seen; a drift too small to be seen still widens it."""
+    heard = [heard_in(ticking(28800, 20.0, 0.4e-3, interval, rate, noise, 20e-6, seed)) for seed in range(12)]
+    off = np.array([(one.rate_s_per_d - 0.5 * sum(rate)) / one.rate_s_per_d_error for one in heard])
+    assert np.sqrt(np.mean(off**2)) < 1.4 and abs(off).max() < 3.0
+    if rate[0] == rate[1]:
+        assert not any(one.rate_change_s_per_d or one.amplitude_change_deg for one in heard)
+        assert np.mean([one.rate_s_per_d_error for one in heard]) < 0.08
+
+
+def test_our_own_sound_of_a_watch_that_runs_down(tmp_path, capsys):
+    """Against the instants of its run: of the first third, and of the last."""
+    scene = ws.load(ws.profiles_dir() / "swiss_lever").set("bodies.balance.angle", "-279.27°")
+    run = ws.simulate(scene.set("torques.0.value", "-0.7 µN·m"), duration=20.0)
+    path = ws.sound(run, tmp_path / "tick.wav")
+    heard, found = ws.listen(path, lift_angle="51.2°"), beats(run)
+    thirds = np.array_split(found.tick[np.isfinite(found.tick)], 3)
+    first, whole, last = (
+        86400.0 * (0.125 / np.polyfit(np.arange(len(one)), one, 1)[0] - 1.0)
+        for one in (thirds[0], np.concatenate(thirds), thirds[2])
+    )
+    assert last - first < -2.0 and heard.rate_s_per_d == pytest.approx(whole, abs=0.3)
+    assert heard.rate_change_s_per_d == pytest.approx(1.5 * (last - first), abs=1.0)
+    assert abs(heard.rate_s_per_d - first) < heard.rate_s_per_d_error + 0.3
+    assert heard.amplitude_change_deg == pytest.approx(found.amplitude_deg[-1] - found.amplitude_deg[0], abs=8.0)
+    assert main(["listen", str(path)]) == 0
+    said = capsys.readouterr().out
+    assert said.count("within the recording: not settled") == 2 and "it falls from" in said
 
 
 def written(path: Path, signal: np.ndarray, width: int, channels: int = 1) -> Path:

@@ -12,7 +12,7 @@ import math
 import struct
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,6 +39,9 @@ HALVES = 0.25  # of the correlation after an oscillation: half as far away stand
 FAINT = 0.08  # of the greatest amplitude in a beat: fainter bursts are rebounds and noise
 FIRST = 0.8e-3, 1.6e-3, 0.3e-3  # s: from before noise A, so long a stretch, shifted by so much at most
 OVER_NOISE = 5.0  # standard deviations above the noise
+STRETCHES, FEW = 6, 4  # of a recording, which are compared, and ticks in each at least
+BLOCKS = 8  # of neighbouring beats, whose delays are compared
+SURE, LIKELY = 4.0, 2.0  # standard errors, beyond which a change is one, or may be
 
 
 NO_BEAT = "nothing in it repeats itself like a watch. Hold the microphone to the case, and keep away other noise"
@@ -100,7 +103,8 @@ class Heard:
     t, forward    first noise of each beat that was heard; ticks are `forward`, tocks are not. Which is which, nobody can hear
     interval_ms   from noise A to noise C, mean of all beats; None where a beat is one noise
     amplitude_deg  by the lift angle, as a timing machine does; None without an interval
-    ..._error     standard error, from the scatter of the beats
+    ..._change_..  from the beginning of the recording to its end, 0 where nothing can be seen of one; None where not known
+    ..._error     standard error, from the scatter of the beats; of a rate that changes, half of the change is part of it
     """
 
     title: str
@@ -109,10 +113,12 @@ class Heard:
     nominal_vph: float | None
     rate_s_per_d: float | None
     rate_s_per_d_error: float | None
+    rate_change_s_per_d: float | None
     beat_error_ms: float
     beat_error_ms_error: float
     interval_ms: float | None
     amplitude_deg: float | None
+    amplitude_change_deg: float | None
     lift_angle_deg: float
     missed: int
     t: Array
@@ -127,8 +133,9 @@ class Heard:
     def numbers(self) -> dict[str, Any]:
         """What `listen --json` prints."""
         names = (
-            *("vph", "nominal_vph", "rate_s_per_d", "rate_s_per_d_error", "beat_error_ms", "beat_error_ms_error"),
-            *("interval_ms", "amplitude_deg", "lift_angle_deg", "seconds", "missed"),
+            *("vph", "nominal_vph", "rate_s_per_d", "rate_s_per_d_error", "rate_change_s_per_d", "beat_error_ms"),
+            *("beat_error_ms_error", "interval_ms", "amplitude_deg", "amplitude_change_deg", "lift_angle_deg", "seconds"),
+            "missed",
         )
         return {**{name: getattr(self, name) for name in names}, "beats": len(self.t), "notes": list(self.notes)}
 
@@ -193,28 +200,38 @@ def heard_in(recording: Recording, lift: float = LIFT_ANGLE, vph: float | None =
     loudness = _loudness(signal, fs)
     beat = _beat(loudness, fs, title)
     marks = _marks(loudness, fs, beat)
-    times, forward, number, bursts = _instants(loudness, fs, beat, marks)
+    times, forward, number, bursts, late = _instants(loudness, fs, beat, marks)
     if len(times) < FEWEST:
         raise NothingHeard(f"{title}: only {len(times)} beats are heard; {FEWEST} are needed")
-    period, split, errors = _regular(times, forward, number)
-    if errors[0] * math.sqrt(len(times) ** 3 / 3.0) > REGULAR * period or abs(2.0 * split - period) > LAME * period:
+    found = _regular(times, forward, number)
+    period, split = found.period, found.split
+    if found.period_error * math.sqrt(len(times) ** 3 / 3.0) > REGULAR * period or abs(2.0 * split - period) > LAME * period:
         raise NothingHeard(f"{title}: {NO_BEAT}")
     nominal: float | None = vph or min(TRAINS, key=lambda one: abs(math.log(one * period / 7200.0)))
     if vph is None and nominal is not None and abs(nominal * period / 7200.0 - 1.0) > NEAR:
         notes.append(f"{7200.0 / period:.0f} vph is no usual train, so there is no rate. State the train (--vph)")
         nominal = None
     interval = _interval(bursts, 0.5 * period)
+    each = [one for both in zip(*late, strict=True) if (one := _interval([*both], 0.5 * period)) is not None]
+    known = interval is not None and len(each) == STRETCHES
+    swings = [amplitude_deg(math.radians(lift), one, period) or math.nan for one in each]
+    slower = found.longer if abs(found.longer) > SURE * found.longer_error else 0.0
+    # Where noise A is too faint to be followed by itself, the beats drift with their later noises.
+    drift = 0.5 * slower or (period * _change(np.array(each), LIKELY) * fs / len(signal) if known else 0.0)
+    uncertain = math.hypot(found.period_error, drift)
     return Heard(
         title=title,
         seconds=len(signal) / fs,
         vph=7200.0 / period,
         nominal_vph=nominal,
         rate_s_per_d=None if nominal is None else DAY * (7200.0 / nominal / period - 1.0),
-        rate_s_per_d_error=None if nominal is None else DAY * errors[0] / period,
+        rate_s_per_d_error=None if nominal is None else DAY * uncertain / period,
+        rate_change_s_per_d=None if nominal is None else -DAY * slower / period,
         beat_error_ms=500.0 * abs(2.0 * split - period),
-        beat_error_ms_error=1e3 * errors[1],
+        beat_error_ms_error=1e3 * found.split_error,
         interval_ms=None if interval is None else 1e3 * interval,
         amplitude_deg=amplitude_deg(math.radians(lift), interval, period),
+        amplitude_change_deg=_change(np.array(swings)) if known else None,
         lift_angle_deg=lift,
         missed=int(number[-1] - number[0]) + 1 - len(number),
         t=times,
@@ -308,11 +325,12 @@ class Burst:
 
 def _instants(
     loudness: Array, fs: float, beat: float, marks: tuple[float, float]
-) -> tuple[Array, NDArray[np.bool_], NDArray[np.int64], list[list[Burst]]]:
-    """First noise of every beat that is heard (s), whether it is a tick, its number; and the bursts of both mean sounds."""
+) -> tuple[Array, NDArray[np.bool_], NDArray[np.int64], list[list[Burst]], list[list[list[Burst]]]]:
+    """First noise of every beat that is heard (s), whether it is a tick, its number; bursts of both mean sounds; of both also
+    those of equal stretches of the recording, none where it is short."""
     before, after, room = 0.35 * beat, 0.6 * beat, 0.2 * beat
     found: list[tuple[Array, NDArray[np.int64]]] = []
-    bursts = []
+    bursts, late = [], []
     for mark in marks:
         count = int((len(loudness) / fs - mark) / (2.0 * beat)) + 1
         centres = mark + 2.0 * beat * np.arange(count)
@@ -322,14 +340,37 @@ def _instants(
         own = _bursts(template, fs)
         bursts.append(own)
         heard = alike >= ALIKE
-        first = begins[heard] + (own[0].at if own else 0.0)
+        late.append(_by_stretches(loudness, fs, begins[heard], before + after))
+        first = begins[heard] + _first_of(own, late[-1], int(heard.sum()))
         found.append((_by_first_noise(loudness, fs, first), numbers[heard]))
     tick = 0 if marks[0] < marks[1] else 1
     times = np.concatenate([found[0][0], found[1][0]])
     forward = np.repeat([tick == 0, tick == 1], [len(found[0][0]), len(found[1][0])])
     number = 2 * np.concatenate([found[0][1], found[1][1]]) + ~forward
     order = np.argsort(number)
-    return times[order], forward[order], number[order], bursts
+    return times[order], forward[order], number[order], bursts, late
+
+
+def _by_stretches(loudness: Array, fs: float, begins: Array, length: float) -> list[list[Burst]]:
+    """The bursts of the mean sounds of equal stretches, in windows that begin where those of the whole recording fit."""
+    if len(begins) < STRETCHES * FEW:
+        return []
+    places = np.rint(begins * fs).astype(np.int64)[:, None] + np.arange(round(length * fs))
+    return [_bursts(loudness[some].mean(axis=0), fs) for some in np.array_split(places, STRETCHES)]
+
+
+def _first_of(whole: list[Burst], late: list[list[Burst]], count: int) -> Array:
+    """Noise A in the window of each beat (s).
+
+    As an amplitude falls, the other noises move away from it, and what fits the whole beat moves with them: then a parabola
+    through the stretches says where it is.
+    """
+    at = np.full(count, whole[0].at if whole else 0.0)
+    first = np.array([own[0].at for own in late if own])
+    if len(first) == STRETCHES and _change(first):
+        middles = [float(np.mean(some)) for some in np.array_split(np.arange(count), STRETCHES)]
+        at = np.polyval(np.polyfit(middles, first, 2), np.arange(count))
+    return at
 
 
 def _by_first_noise(loudness: Array, fs: float, first: Array) -> Array:
@@ -408,12 +449,47 @@ def _interval(bursts: list[list[Burst]], half_period: float) -> float | None:
     return float(np.mean(found)) if len(found) == len(bursts) else None
 
 
-def _regular(times: Array, forward: NDArray[np.bool_], number: NDArray[np.int64]) -> tuple[float, float, tuple[float, float]]:
-    """Period, time from tick to tock, and the standard errors of period and beat error (s), by least squares."""
-    design = np.column_stack([forward.astype(float), (~forward).astype(float), (number - (~forward)) / 2.0])
-    found, *_ = np.linalg.lstsq(design, times, rcond=None)
-    spare = max(len(times) - 3, 1)
-    scatter = float(np.sum((times - design @ found) ** 2)) / spare
+class Regular(NamedTuple):
+    """Period, time from tick to tock, their standard errors; by how much the period grows to the end, and its error; s."""
+
+    period: float
+    split: float
+    period_error: float
+    split_error: float
+    longer: float
+    longer_error: float
+
+
+def _regular(times: Array, forward: NDArray[np.bool_], number: NDArray[np.int64]) -> Regular:
+    """By least squares, with a parabola beside the line: a period that drifts bends the row of beats."""
+    whole = (number - ~forward) / 2.0
+    along = whole - whole.mean()
+    design = np.column_stack([forward, ~forward, along, along**2 - np.mean(along**2)]).astype(float)
+    line, *_ = np.linalg.lstsq(design[:, :3], times, rcond=None)
+    bent, *_ = np.linalg.lstsq(design, times, rcond=None)
+    rest = times - design @ bent
+    scatter = float(rest @ rest) / max(len(times) - 4, 1)
+    # Teeth that differ make neighbouring beats late together: that many fewer beats are independent.
+    blocks = np.array_split(rest, BLOCKS)
+    if len(rest) >= BLOCKS * FEWEST and scatter > 0.0:
+        scatter *= max(1.0, float(np.mean([len(one) * one.mean() ** 2 for one in blocks])) / scatter)
     covariance = scatter * np.linalg.pinv(design.T @ design)
-    across = np.array([-1.0, 1.0, -0.5])
-    return float(found[2]), float(found[1] - found[0]), (math.sqrt(covariance[2, 2]), math.sqrt(across @ covariance @ across))
+    across = np.array([-1.0, 1.0, -0.5, 0.0])
+    period_error, bend_error = np.sqrt(np.diag(covariance)[2:]).tolist()
+    split_error = math.sqrt(across @ covariance @ across)
+    span = 2.0 * float(np.ptp(whole))
+    return Regular(
+        float(line[2]), float(line[1] - line[0]), period_error, split_error, span * float(bent[3]), span * bend_error
+    )
+
+
+def _change(values: Array, sure: float = SURE) -> float:
+    """By how much the means of equal stretches say that something changes from beginning to end, on a straight line.
+
+    0 where that is not beyond so many standard errors by their scatter.
+    """
+    place = (np.arange(len(values)) + 0.5) / max(len(values), 1) - 0.5
+    slope = float(values @ place / (place @ place))
+    rest = values - values.mean() - slope * place
+    error = math.sqrt(float(rest @ rest) / max(len(values) - 2, 1) / float(place @ place))
+    return slope if abs(slope) > sure * error else 0.0

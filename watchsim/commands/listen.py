@@ -84,14 +84,27 @@ def text(heard: Heard) -> str:
     if heard.rate_s_per_d is not None:
         rate = with_error(heard.rate_s_per_d, heard.rate_s_per_d_error, " s/d")
         lines.append(("rate", f"{rate}, against {heard.nominal_vph:g} vph"))
+        lines += _changes(heard.rate_s_per_d, heard.rate_change_s_per_d, 1, " s/d")
     lines.append(("beat error", with_error(heard.beat_error_ms, heard.beat_error_ms_error, " ms")))
     if heard.amplitude_deg is None:
         lines.append(("amplitude", "no second noise is heard in the beats by which it could be measured"))
     else:
         lines.append(("amplitude", f"{heard.amplitude_deg:.0f}° with a lift angle of {heard.lift_angle_deg:g}°"))
+        lines += _changes(heard.amplitude_deg, heard.amplitude_change_deg, 0, "°")
         lines.append(("", f"the last loud noise comes {heard.interval_ms:.2f} ms after the first"))
     lines += [("note", note) for note in heard.notes]
     return "\n".join([heard.title, *(f"  {label:{LABEL}}{words}" for label, words in lines)])
+
+
+def _changes(value: float, change: float | None, decimals: int, unit: str) -> list[tuple[str, str]]:
+    """From what to what it goes within the recording; nothing where it stays."""
+    if not change:
+        return []
+    from watchsim.units import signed
+
+    first, last = (signed(value + part * change, decimals) for part in (-0.5, 0.5))
+    way = "rises" if change > 0.0 else "falls"
+    return [("", f"it {way} from {first}{unit} to {last}{unit} within the recording: not settled")]
 
 
 def _save(heard: Heard, target: Path) -> None:
