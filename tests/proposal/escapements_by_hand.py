@@ -42,9 +42,9 @@ class Anchor:
         thick = 0.5 * math.radians(0.5 * pitch - self.drop) * r
         document = ezdxf.new("R2010", units=UNITS[self.unit])
         teeth = [
-            (*polar(rho * r, self.turned + k * pitch + a), math.tan(math.radians(turn) / 4.0))
+            (*polar(rho * r, self.turned + (k + a) * pitch), math.tan(math.radians(turn * pitch) / 4.0))
             for k in range(self.teeth)
-            for rho, a, turn in ((0.78, 0.2 * pitch, 0.0), (1.0, 0.0, 0.6), (1.0, 0.6, 0.0), (0.78, pitch, 0.2 * pitch))
+            for rho, a, turn in ((0.78, 0.2, 0.0), (1.0, 0.0, 0.04), (1.0, 0.04, 0.0), (0.78, 1.0, 0.2))
         ]
         self._outline(document, self.layers[0], teeth)
         for exit_ in (False, True):

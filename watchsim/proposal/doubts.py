@@ -58,7 +58,7 @@ def _layout(moving: Sequence[Role], facings: Sequence[Facing], apart: bool, left
         return
     if any(facing.first.moves and facing.second.moves and not facing.by_name_alone for facing in facings):
         return
-    over = [f"{one.name} and {other.name}" for one, other in itertools.combinations(moving, 2) if _lie_over(one, other)]
+    over = [f"{one.name} and {other.name}" for one, other in itertools.combinations(moving, 2) if lie_over(one, other)]
     if over and facings and all(facing.by_name_alone for facing in facings):
         yield (
             f"{', '.join(over)} lie over each other, and nothing else comes within reach: contacts were guessed by their names "
@@ -122,7 +122,7 @@ def _clicks(moving: Sequence[Role]) -> Iterator[str]:
 MANY = 3  # contacts of two bodies, without names that fit: more are likely to be of several heights
 
 
-def _lie_over(one: Role, other: Role) -> bool:
+def lie_over(one: Role, other: Role) -> bool:
     return any(p.region.intersects(q.region) for p in one.part.pieces for q in other.part.pieces)
 
 
@@ -136,7 +136,7 @@ def _heights(moving: Sequence[Role], facings: Sequence[Facing]) -> Iterator[str]
             continue
         met = [facing for facing in facings if {facing.first.name, facing.second.name} == {one.name, other.name}]
         nameless = not any(facing.by_name for facing in met)
-        if {one.task, other.task} in partners and nameless and (len(met) > MANY or not met) and _lie_over(one, other):
+        if {one.task, other.task} in partners and nameless and (len(met) > MANY or not met) and lie_over(one, other):
             taken = f"{len(met)} contacts were taken for likely" if met else "no contact was taken for likely"
             yield (
                 f"{one.name} and {other.name} lie over each other, and a flat drawing does not show which of their surfaces "

@@ -21,10 +21,14 @@ from watchsim.proposal.words import (
     DRIVER,
     FIXED,
     FORK,
+    IMPULSE,
     LEVER,
     OSCILLATOR,
     PASSING,
+    PIN,
     RESTING,
+    ROLLER,
+    STONES,
     WHEEL,
     facing_by_name,
     tokens,
@@ -33,7 +37,7 @@ from watchsim.proposal.words import (
 SWING = math.radians(15.0)  # of a lever or click, to either side
 STEPS = 7
 MARGIN = 0.01  # of the whole size: what comes as near as this is taken to meet
-BETTER = ((FORK, "pin", "impulse"), (RESTING, "roller", "pallet"))  # of a surface: what it meets sooner than another, by name
+BETTER = ((FORK, PIN - IMPULSE, IMPULSE), (RESTING, ROLLER, STONES))  # of a surface: what it meets sooner than another, by name
 OVER = 0.02  # of the smaller area: what overlaps more lies at different heights
 
 
@@ -78,8 +82,12 @@ def facings(roles: Sequence[Role], size: float) -> tuple[list[Facing], list[Faci
 def _best_named(named: list[Facing]) -> list[Facing]:
     """Without those of which a better one is there: of a co-axial's fork with the impulse stone, and the like."""
     words = [set(tokens(facing.first_layer)) | set(tokens(facing.second_layer)) for facing in named]
-    rivals = [(one, worse) for one, better, worse in BETTER if any(one & found and better in found for found in words)]
-    return [facing for facing, found in zip(named, words, strict=True) if not any(a & found and b in found for a, b in rivals)]
+    rivals = [(one, better, worse) for one, better, worse in BETTER if any(one & found and better & found for found in words)]
+    return [
+        facing
+        for facing, found in zip(named, words, strict=True)
+        if not any(one & found and worse & found and not better & found for one, better, worse in rivals)
+    ]
 
 
 def _lies_over(facing: Facing, roles: Sequence[Role]) -> bool:

@@ -180,7 +180,7 @@ def _renamed(stroke: Stroke, named: Sequence[tuple[Inserted, str]]) -> Stroke:
 
 
 def _marks(drawing: Drawing) -> tuple[list[Mark], frozenset[str]]:
-    """Points, and circles on layers called pivots, axes, bores or arbors; and those layers, which hold no material."""
+    """Points, and circles on layers called pivots, axes, bores or arbors; and their layers, which hold no material."""
     circles = [(loop, circle) for loop in drawing.loops if (circle := circle_of(loop)) is not None]
     shown = frozenset(loop.layer for loop, _ in circles if shows_pivot(loop.layer))
     shown -= {loop.layer for loop in drawing.loops if circle_of(loop) is None and not is_mark(loop.layer)}
@@ -202,7 +202,8 @@ def _marks(drawing: Drawing) -> tuple[list[Mark], frozenset[str]]:
             bores.setdefault(within, []).append(replace(mark, within=within))
     middles = {loop: section((loop,)).centroid for loop in bores}
     central = [min(marks, key=lambda one: math.dist(one.at, middles[loop])) for loop, marks in bores.items()]
-    return points + axes + central, shown  # others are holes for screws
+    found = points + axes + central  # others are holes for screws
+    return found, frozenset(mark.layer for mark in axes + central)
 
 
 def _around(mark: Mark, outlines: Sequence[Loop]) -> Loop | None:

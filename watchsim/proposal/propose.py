@@ -16,7 +16,7 @@ from typing import Any
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.material import is_mark
 from watchsim.mechanism.overlap import overlaps
-from watchsim.proposal.doubts import doubts
+from watchsim.proposal.doubts import doubts, lie_over
 from watchsim.proposal.facing import Facing, facings, named_facings
 from watchsim.proposal.parts import parts_of
 from watchsim.proposal.pieces import Piece, Source, pieces_of, read_sources, size_of
@@ -315,7 +315,8 @@ def propose(paths: Sequence[Path], way: int = 0, because: str = "") -> Proposal:
         kept = [facing for k, facing in enumerate(plan.facings) if k not in wrong]
         gone = [(facing, "they overlap at the start") for k, facing in enumerate(plan.facings) if k in wrong]
         plan = replace(plan, facings=kept, others=[*plan.others, *gone], guesses=[])
-    meets = any(facing.first.moves and facing.second.moves and not facing.by_name_alone for facing in plan.facings)
+    pairs = [facing for facing in plan.facings if facing.first.moves and facing.second.moves and not places]
+    meets = any(not facing.by_name_alone or lie_over(facing.first, facing.second) for facing in pairs)
     sides = tuple((plan.side(*facing.sides[0]), plan.side(*facing.sides[1])) for facing in plan.facings)
     either = not way and why == UNKNOWN_WAY
     return Proposal(

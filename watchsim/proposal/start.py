@@ -36,7 +36,7 @@ SHARE = 0.35  # of the drive's work that reaches the oscillator: usual for a lev
 LIGHT = 30.0  # times the lever's inertia: a balance with less is drawn without its rim
 KEEPS_UP = 5.0  # times the torque by which the wheel just follows the pallets: with less the swing pushes the wheel on
 STEPPED = 8  # teeth: a wheel with fewer is driven step by step, as in a Geneva drive
-LIFTING = 0.2  # of the drive's work that lifts a click
+LIFTING = 0.1  # of the drive's work that lifts a click
 BENT = 0.5  # rad by which the spring of a click is bent at the start: its force hardly changes
 FLAT = 0.2  # share of its motion that leads to the cam: what has less does not turn but slides
 TURNS = 1.0  # per second, of what has nothing to hold it back but damping
@@ -427,15 +427,16 @@ def start_of(roles: Sequence[Role], facings: Sequence[Facing], direction: int) -
     rest, rest_why = _rest(swinging, first_of(roles, LEVER), facings)
     angles = dict.fromkeys((role.name for role in roles if role.moves), 0.0)
     why: dict[str, str] = {}
-    swing = 0.0
+    waiting, swing = None, 0.0
     if swinging is not None:
         ways = SWINGS if turns_fully(swinging) else ANCHOR_SWINGS
         own = [facing for facing in facings if swinging in (facing.first, facing.second)]
-        clear = (way for way in ways if turns_fully(swinging) and clearance(own, {**angles, swinging.name: rest - way}) > 0.0)
-        swing = next(clear, ways[0])
-        angles[swinging.name] = rest - swing
+        for swing in (*ways, ways[0]):  # teeth may be too narrow for a wide swing
+            angles[swinging.name] = rest - swing
+            waiting = locked(roles, facings, angles, direction)
+            if clearance(own, angles) > 0.0 if turns_fully(swinging) else waiting is not None:
+                break
         why[swinging.name] = "let go at the end of a swing" if turns_fully(swinging) else "let go a little beside its rest"
-    waiting = locked(roles, facings, angles, direction)
     if waiting is not None:
         angles, reasons = waiting
         why.update(reasons)

@@ -42,7 +42,8 @@ def tried(paths: Sequence[Path]) -> Proposal:
     if not found.meets:
         return found
     faults, works = _run(found)
-    if not {role.task for role in found.roles} & {OSCILLATOR, DRIVER, CLICK} or (works and not found.either_way):
+    tasks = {role.task for role in found.roles}
+    if not tasks & {OSCILLATOR, DRIVER, CLICK} or (works and not found.either_way):
         return found.doubting(faults)
     other = propose(paths, -found.way)
     faults_there, works_there = _run(other)
@@ -53,10 +54,13 @@ def tried(paths: Sequence[Path]) -> Proposal:
     if there > here or not leans:
         found = propose(paths, (other if there > here else found).way, BY_FUNCTION if by_function else BY_TRIAL)
         faults = faults_there if there > here else faults
+    stepped = CLICK in tasks and DRIVER not in tasks
     if by_function and faults:
         faults.append(f"{BY_FUNCTION}: other inertias or another torque may mend what the trial shows")
-    elif there > here and leans and not by_function and any(role.little for role in found.roles):
-        faults.append(f"against the lean of the teeth, {BY_TRIAL}, with inertias and a torque that are guesses")
+    elif not by_function and (stepped or (there > here and leans and any(role.little for role in found.roles))):
+        faults.append(
+            f"which way the wheel is driven is a guess: {BY_TRIAL}, with inertias, springs and a torque that are guesses"
+        )
     return found.doubting(faults)
 
 

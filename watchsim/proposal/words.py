@@ -39,6 +39,7 @@ _FEATURES = {
 }
 PARTS = {word: kind for kind, text in _PARTS.items() for word in _words(text)}
 FEATURES = {word: kind for kind, text in _FEATURES.items() for word in _words(text)}
+ESCAPING = _words("escape scape échappement scappamento")
 TEETH = _words("teeth tooth wheel gear pinion ratchet star zahn zaehne zähne rad steigrad dents roue étoile denti ruota stella")
 STONES = _words(
     "pallet pallets stone stones teeth stein steine paletten hebestein hebesteine klaue klauen palette palettes levée"
@@ -49,7 +50,8 @@ CAMS = _words("cam snail nocken kurvenscheibe schnecke came limaçon camma chioc
 PENDULUMS = _words("pendulum rod bob pendel pendule tige lentille pendolo")
 ANCHORS = PENDULUMS | _words("anchor anker hemmstück ancre ancora")  # what swings a little only
 FORK = _words("fork horn horns gabel hörner fourchette cornes forchetta")
-PIN = _words("pin jewel impulse hebelstein cheville ellipse ellisse")
+IMPULSE = _words("impulse impuls impulsion impulso")
+PIN = IMPULSE | _words("pin jewel hebelstein cheville ellipse ellisse")
 GUARD = _words("dart guard messer dard dardo")
 ROLLER = _words("safety roller rolle sicherheitsrolle plateau disco")
 RESTING = _words("resting repos ruhe riposo")  # the long teeth of a duplex wheel
@@ -70,10 +72,6 @@ def shows_pivot(name: str) -> bool:
 
 def part_of(name: str) -> str | None:
     """The kind of part that a name speaks of; None where it says nothing, or names features of two kinds."""
-    words = tokens(name)
-    named = [PARTS[word] for word in words if word in PARTS]
-    if named:
-        return named[0]
     hinted = hints_of(name)
     return next(iter(hinted)) if len(hinted) == 1 else None
 
@@ -82,6 +80,8 @@ def hints_of(name: str) -> frozenset[str]:
     """All kinds of part that the words of a name may belong to; empty where they say nothing."""
     words = tokens(name)
     named = [PARTS[word] for word in words if word in PARTS]
+    if WHEEL in named and ESCAPING & set(words):
+        return frozenset((WHEEL,))  # an anchor escape wheel
     return frozenset(named[:1] or (FEATURES[word] for word in words if word in FEATURES))
 
 
@@ -89,7 +89,7 @@ def part_word(name: str) -> str | None:
     """What the part is called in a layer's name: "escape_wheel" of ESCAPE_WHEEL_z-1.30; None where it is not named."""
     words = tokens(name)
     for k, word in enumerate(words):
-        if word in PARTS:
+        if word in PARTS and hints_of(name) == {PARTS[word]}:
             return f"{words[k - 1]}_{word}" if k and FEATURES.get(words[k - 1]) == PARTS[word] else word
     return None
 
