@@ -248,6 +248,11 @@ SLIP_SLACK = 2.0
 
 # Of a step: places at which modes are looked at again where a stage saw one end. Large: slower; small: short ends are missed.
 MONITOR_SAMPLES = 8
+# Of the gap between the ends of an arc: a contact that may turn by more in a step is looked for there. Large: a notch is passed
+# unseen; small: slower.
+PASSES_GAP = 0.5
+# Times the way in such gaps: places at which modes are then looked at. Large: slower; small: a notch is passed unseen.
+LOOKS_PER_GAP = 4.0
 # Newton's steps to where a contact closes that drift has closed. Large: slower; small: it closes late, by its drift.
 TOUCH_STEPS = 6
 

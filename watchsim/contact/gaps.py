@@ -259,6 +259,14 @@ def _inside_fan(p, along, across, reach):
     return reach * sine
 
 
+@kernel
+def gap_of_arc(p):
+    """Angle between the two ends of a primitive's arc that is not part of it, rad; infinite where it has none or no ends."""
+    if p.extent == FULL or p.kind == LINE or p.radius == 0.0:
+        return math.inf
+    return 2.0 * (math.pi - math.atan2(p.half_sin, p.half_cos))
+
+
 @hot_kernel
 def margins_of(contact, a, b, pa, pb, shape):
     """How far inside primitive a and inside b the contact lies, metres; negative outside."""

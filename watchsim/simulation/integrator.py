@@ -12,7 +12,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.contact.gaps import OPEN, STICK, normal_gap, place
+from watchsim.contact.gaps import OPEN, STICK, contact_kinematics, gap_of_arc, normal_gap, place, place_body
 from watchsim.dynamics.delassus import copy
 from watchsim.dynamics.forces import stored_energy
 from watchsim.jit import kernel
@@ -47,7 +47,9 @@ from watchsim.tolerances import (
     HIDDEN_REBOUND,
     LEAST_FOR_LEDGER,
     LEDGER_ROUNDING,
+    LOOKS_PER_GAP,
     MONITOR_SAMPLES,
+    PASSES_GAP,
     RATES_TURNED,
     ROOT_RESOLUTION,
     SLIP_SLACK,
@@ -247,21 +249,55 @@ def first_leave(model, regime, options, smallest, smooth, out_counts):
     `smallest`: the smallest monitor at the stages of the step. Beyond the end of a primitive forces mean nothing: where two
     contacts change places, the one that pulls before pushes then, so that monitors are read again just before one leaves.
     """
-    if smallest > 0.0:
+    looks = _looks_for_gaps(model, regime, smooth)
+    if smallest > 0.0 and looks == 0:
         return math.inf, NONE_FIRED
+    looks = max(looks, MONITOR_SAMPLES)
     length = smooth.step.span.length
     codes = MONITORS * smooth.held.contacts + len(model.coordinates)
     for code in range(codes):
         if smooth.before[code] <= 0.0:
             return 0.0, code
     before = 0.0
-    for sample in range(1, MONITOR_SAMPLES + 1):
-        tau = length * sample / MONITOR_SAMPLES
+    for sample in range(1, looks + 1):
+        tau = length * sample / looks
         if _evaluate(model, regime, options, tau, smooth, out_counts) <= 0.0:
             return _first_before(model, regime, options, before, tau, smooth, out_counts)
         before = tau
         copy(smooth.monitors, smooth.before)
     return math.inf, NONE_FIRED
+
+
+# Between two stages of a step a contact may pass the whole gap between the ends of an arc: the notch of a duplex roller.
+
+
+@kernel
+def _looks_for_gaps(model, regime, smooth):
+    """At how many places of the step the monitors have to be read so that no contact passes the gap of an arc unseen."""
+    step, n, most = smooth.step, len(model.coordinates), 0.0
+    for j in range(smooth.held.contacts):
+        contact = model.contacts[regime.active[j]]
+        a, b = model.primitives[contact.a], model.primitives[contact.b]
+        gap = min(gap_of_arc(a), gap_of_arc(b))
+        if gap >= math.pi:
+            continue
+        turning = 0.0
+        for at in range(3):  # at the step's start, middle and end
+            for i in range(2 * n):
+                smooth.y[i] = dense_value(step, i, 0.5 * at * step.span.length)
+            for body in (a.body, b.body):
+                place_body(model, body, smooth.y[:n], smooth.y[n : 2 * n], smooth.pose)
+            contact_kinematics(model, regime.active[j], smooth.pose, 0, smooth.closed)
+            slip, reach = abs(smooth.closed.kin[0].gT_dot), min(_reach(a), _reach(b))
+            turning = max(turning, abs(smooth.pose[a.body].w - smooth.pose[b.body].w) + slip / reach)
+        most = max(most, turning * step.span.length / gap)
+    return math.ceil(LOOKS_PER_GAP * most) if most > PASSES_GAP else 0
+
+
+@kernel
+def _reach(primitive):
+    """Radius of an arc whose gap could be passed, m; infinite for other primitives."""
+    return primitive.radius if gap_of_arc(primitive) < math.pi else math.inf
 
 
 @kernel
