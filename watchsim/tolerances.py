@@ -132,6 +132,8 @@ EXTENT_PER_JOINT = 4.0
 SPEED_ZERO = 1e-8
 # The same, for each of the tolerance: velocities drift that much in a step. Large, small: as above.
 SPEED_PER_TOLERANCE = 20.0
+# The most of it: a faster slip reverses at every tolerance. Large: reversals are missed; small: drift counts.
+COARSEST_SPEED_ZERO = 2e-7
 # Of a contact's force terms. Large: late detachment; small: rounding decides.
 FORCE_ZERO = 1e-10
 # rad of the scene's slowest spring (of what its forces, else its velocities do, where there is none): the scene's own unit of

@@ -76,7 +76,7 @@ QUOTED = [
     (METHOD, "a gap rate that is not rounding ({} of its terms)", tolerances.CONTRADICTING_RATE * tolerances.RATE_ROUNDING),
     (METHOD, "by less than {} `speed_zero` is not corrected", tolerances.SLIP_SLACK),
     (METHOD, "account for, and beyond that by at most {} of itself", tolerances.EXPLAINED_SHARE),
-    (METHOD, "or by that of {} `speed_zero`", tolerances.STOPPABLE_SPEED),
+    (METHOD, "or by that of {} `speed_drift`", tolerances.STOPPABLE_SPEED),
     (METHOD, "may not exceed {} of the energy turned over", tolerances.LEDGER_SHARE),
     (METHOD, "turned over, or {} times the tolerance", tolerances.LEDGER_PER_TOLERANCE),
     (METHOD, "a bisection whenever {} steps have not halved", root_bracket.LOOK_EVERY),

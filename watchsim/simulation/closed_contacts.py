@@ -373,7 +373,7 @@ def kinetic_energy(model, u):
 @kernel
 def is_explained(model, options, before, after, highest):
     """True if a change of kinetic energy from `before` to `after` (J, impulses taken out) is of the size of rounding."""
-    allowed = EXPLAINED_SHARE * before + EXPLAINED_OF_HIGHEST * highest
+    allowed = max(EXPLAINED_SHARE, options.tolerance) * before + EXPLAINED_OF_HIGHEST * highest
     change = abs(after - before)
     if change <= allowed:
         return True
@@ -381,6 +381,6 @@ def is_explained(model, options, before, after, highest):
         coordinate = model.coordinates[i]
         if coordinate.driven:
             continue
-        slow = STOPPABLE_SPEED * options.speed_zero / options.size * coordinate.scale
+        slow = STOPPABLE_SPEED * options.speed_drift / options.size * coordinate.scale
         allowed += 0.5 * coordinate.mass * slow * slow
     return change <= allowed

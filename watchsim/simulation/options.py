@@ -17,6 +17,7 @@ from watchsim.tolerances import (
     BEHIND_MOST,
     BEHIND_PER_TOLERANCE,
     COARSEST_ROWS,
+    COARSEST_SPEED_ZERO,
     EXTENT_PER_JOINT,
     FINEST_ROWS,
     FORCE_ZERO,
@@ -44,6 +45,7 @@ class Options(NamedTuple):
     sunk: float  # m: so far behind, where flat faces have let it. Large: accepts contacts on the far side; small: falls through
     extent: float  # m: how far beyond its primitive's end a contact counts. Large: sticks out; small: slips through joints
     speed_zero: float  # m/s: slower is zero. Large: freezes slow sliding; small: below the rounding of velocities
+    speed_drift: float  # m/s: so much of a velocity may be the error of a step. Large: hides faults; small: reports rounding
     force_zero: float  # share of a contact's force terms that counts as zero. Large: late detachment; small: rounding decides
     accumulation_time: float  # s: rebounds that would end sooner are ended by rule. Large: changes timing; small: more impacts
     accumulation_speed: float  # m/s: faster rebounds are never ended by rule
@@ -70,7 +72,8 @@ def options_for(size: float, tolerance: float, longest: float, natural: float = 
         sunk=BEHIND_MOST * size,
         extent=EXTENT_PER_JOINT * JOINT_RESOLUTION * size,
         # Velocities drift off their contacts by about the tolerance within a step.
-        speed_zero=max(SPEED_ZERO, SPEED_PER_TOLERANCE * tolerance) * size / unit,
+        speed_zero=max(SPEED_ZERO, min(SPEED_PER_TOLERANCE * tolerance, COARSEST_SPEED_ZERO)) * size / unit,
+        speed_drift=max(SPEED_ZERO, SPEED_PER_TOLERANCE * tolerance) * size / unit,
         force_zero=FORCE_ZERO,
         accumulation_time=ACCUMULATION_TIME * unit,
         accumulation_speed=ACCUMULATION_SPEED * size / unit,
