@@ -100,6 +100,12 @@ def test_what_cannot_be_kept(what: str, words: str, capsys, tmp_path) -> None:
     assert "all and events exclude each other" in capsys.readouterr().err
 
 
+def test_what_has_no_beats_has_no_picture_of_them(tmp_path) -> None:
+    """A follower whose spring presses it onto its cam."""
+    assert main(["run", str(profiles_dir() / "cam"), "--duration", "1 s", "-o", str(tmp_path / "cam")]) == FINE
+    assert {path.name for path in (tmp_path / "cam" / "plots").iterdir()} == {"kinematics.png", "last_stretch.png"}
+
+
 def test_windows_of_any_kind_cost_no_run(capsys, tmp_path) -> None:
     """Two windows, one between two rows, and one after the end."""
     run = ["run", SCENE, "--duration", "0.5 s"]

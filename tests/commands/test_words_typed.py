@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import io
+import math
 import os
 import subprocess
 import sys
@@ -107,6 +109,21 @@ def test_a_sentence_is_broken_between_words_under_its_beginning() -> None:
 @pytest.mark.parametrize("line", ["short", "  key (°)    12.3    45.6    ticks, a row", "/a/path/" + 60 * "x"])
 def test_rows_of_tables_and_paths_are_left_whole(line: str) -> None:
     assert console.folded(line, 40) == line
+
+
+@pytest.mark.parametrize(("whole", "said"), [(8.0, "3 of 8   2.0 s elapsed, 5.0 s left"), (math.inf, "3   2.0 s elapsed")])
+def test_progress_of_which_the_end_may_not_be_known(whole: float, said: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A search on a terminal ended with a fault of the program as soon as it had taken a second."""
+    screen = io.StringIO()
+    screen.isatty = lambda: True  # type: ignore[method-assign]
+    monkeypatch.setattr(sys, "stderr", screen)
+    now = iter([0.0, 0.0, 2.0])
+    monkeypatch.setattr(console.time, "monotonic", lambda: next(now))
+    progress = console.Progress("designs:")
+    monkeypatch.setattr(progress, "_shown", -1.0)
+    progress(1.0, whole)
+    progress(3.0, whole)
+    assert screen.getvalue().rpartition("\r")[2].rstrip() == f"designs:  {said}"
 
 
 @pytest.mark.skipif(not hasattr(os, "openpty"), reason="needs a terminal")

@@ -249,6 +249,17 @@ def test_all_faults_at_once(capsys, arguments, all_of):
     assert all(words in said for words in all_of) and "Traceback" not in said
 
 
+def test_a_goal_beyond_what_works_is_given_up_soon():
+    """No drive swings this balance to 400°: its pin knocks from 338° on. Runs of minutes show that of each design beyond."""
+    seen = []
+    found = ws.improve(SWISS, {"torques.0.value": None}, "amplitude = 400°", progress=seen.append)
+    assert not found.found and len(seen) == found.evaluations <= 8
+    reached, knocks = re.search(r"comes to ([\d.]+)° .* and at -([\d.]+) µN·m the watch knocks", found.message).groups()
+    assert 330.0 < float(reached) < 338.0 and 1.45 < float(knocks) < 1.6
+    near = ws.improve(SWISS, {"torques.0.value": None}, "amplitude = 337°")
+    assert near.found and near.value == pytest.approx(337.0, abs=1e-6)
+
+
 def test_goals_that_cannot_be_met_are_explained():
     scene = ws.load(SWISS)
     found = ws.improve(scene, {"torques.0.value": ("-0.9 µN·m", "-1.1 µN·m")}, "amplitude = 330°")

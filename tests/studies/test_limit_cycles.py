@@ -139,6 +139,8 @@ def test_unequal_teeth(bench):
     assert found.period_s[-30:].mean() == pytest.approx(cycle.period_s, abs=1e-11)
     uneven = 500.0 * unevenness(found.mark) * np.sign(found.end_at - found.start_at)
     assert abs(uneven[-30:].mean()) == pytest.approx(cycle.beat_error_ms, abs=1e-6)
+    assert "they differ: the amplitude varies by" in text("Teeth", cycle)
+    assert "they differ" not in text("Teeth", replace(cycle, tooth_spread_deg=0.9 * cycle.amplitude_deg_error))
     alike = steady(bench)
     assert cycle.multipliers[0] == pytest.approx(alike.multipliers[0] ** 15, rel=0.1)
     assert cycle.left_after_one()[0] == pytest.approx(alike.left_after_one()[0], rel=0.01)

@@ -21,6 +21,7 @@ from hypothesis import strategies as st
 import watchsim as ws
 from watchsim.cli import main
 from watchsim.render.study_plot import plot_sweep
+from watchsim.scene.keys import in_words
 from watchsim.studies.axes import Axis, axes_from_texts, axes_from_values, slug
 from watchsim.studies.point import Question, outputs_named
 from watchsim.studies.sweep import Sweep, swept
@@ -402,14 +403,28 @@ def words(figure):
     return texts + labels + [axes.get_title(loc="right") for axes in figure.axes]
 
 
+def test_the_title_leaves_out_what_is_swept():
+    """A lever of 15 teeth is not what a sweep over teeth shows."""
+    scene = ws.designs.swiss_lever().scene()
+    assert scene.title == "Swiss lever, 28800 vph, 15 teeth"
+    titles = [ws.sweep(scene, values).title for values in ({"design.teeth": [14, 15]}, {"contacts.0.friction": [0.12]})]
+    assert titles == ["Swiss lever, 28800 vph", scene.title]
+
+
+def test_labels_name_a_number_as_it_is_typed():
+    said = {"torques.0.value": "torques.0.value", "scene.gravity.1": "gravity y", "bodies.wheel.position.0": "wheel position x"}
+    assert {key: in_words(key) for key in said} == said
+    assert in_words("bodies.lever.adjust.STONES.turn") == "lever STONES turn" and in_words("design.teeth") == "teeth"
+
+
 def test_a_curve_in_usual_units_with_what_failed():
     found = words(plot_sweep(made(FRICTION)))
-    assert "contact 1 friction" in found and "amplitude (°)" in found and "knocks" in found
+    assert "contacts.0.friction" in found and "amplitude (°)" in found and "knocks" in found
 
 
 def test_a_family_and_a_map():
     figure = plot_sweep(made(TORQUE, DRAWING))
-    assert "torque 1 magnitude (µN·m)" in words(figure)  # it turns clockwise; the curves run from weak to strong
+    assert "torques.0.value magnitude (µN·m)" in words(figure)  # it turns clockwise; the curves run from weak to strong
     assert [sorted(line.get_xdata())[0] for line in figure.axes[0].get_lines()][:1] == [pytest.approx(1.0)]
     assert [text.get_text() for text in figure.legends[0].get_texts()] == ["a.dxf", "b.dxf"]
     other = Axis("springs.0.stiffness", tuple(1e-6 * (1.0 + 0.1 * i) for i in range(8)), "N·m/rad", "µN·m/rad")

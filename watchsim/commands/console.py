@@ -189,11 +189,10 @@ class Progress:
         self._shown = now
         elapsed = now - self._start
         first, begun = self._first = self._first or (done, now)
-        words = f"\r{self._words}  {done:.4g} of {whole:.4g}   {_clock(elapsed)} elapsed"
-        if now - begun > SEEN and done > first:  # what came before, such as compiling, does not come again
+        known = whole < math.inf  # else nobody knows how many there will be
+        words = f"\r{self._words}  {done:.4g}{f' of {whole:.4g}' if known else ''}   {_clock(elapsed)} elapsed"
+        if known and now - begun > SEEN and done > first:  # what came before, such as compiling, does not come again
             words += f", {_clock((now - begun) * (whole - done) / (done - first))} left"
-        if whole == math.inf:  # nobody knows how many there will be
-            words = f"\r{self._words}  {done:.4g}   {_clock(elapsed)} elapsed"
         self._show(f"{words[: self._wide + 1]:<{self._wide + 1}}")
 
     def close(self) -> None:

@@ -166,7 +166,7 @@ def plots(run: Trajectory, panels: Kinematics | None = None) -> dict[str, Draw]:
     """Kinematic plots of all that was recorded and of its last part, in the `panels` of `empty_panels` where there are any."""
     if len(run.t) < 2:
         return {}
-    from watchsim.scene.roles import keeps_time
+    from watchsim.scene.roles import keeps_time, only_presses
 
     @functools.cache
     def shown() -> Kinematics:
@@ -183,7 +183,7 @@ def plots(run: Trajectory, panels: Kinematics | None = None) -> dict[str, Draw]:
 
         return draw
 
-    last = "last_beats" if keeps_time(run.scene) else "last_stretch"
+    last = "last_beats" if keeps_time(run.scene) and not only_presses(run.scene) else "last_stretch"
     return {"plots/kinematics.png": plot(lambda: None), f"plots/{last}.png": plot(lambda: whole_beats(run))}
 
 

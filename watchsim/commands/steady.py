@@ -57,7 +57,7 @@ def text(title: str, cycle: Cycle) -> str:
         each = "each oscillation" if cycle.oscillations == 1 else f"{cycle.oscillations} oscillations"
         stable = "stable" if abs(multiplier) < 1.0 else "unstable"
         lines.append(("multiplier", f"{multiplier:.6f} of a small disturbance is left after {each}; {stable}"))
-    if cycle.tooth_spread_deg and cycle.oscillations > 1:
+    if (cycle.tooth_spread_deg or 0.0) > (cycle.amplitude_deg_error or 0.0) and cycle.oscillations > 1:
         lines.append(("teeth", f"they differ: the amplitude varies by {cycle.tooth_spread_deg:.2g}° in a turn of the wheel"))
     if cycle.verdict:
         lines.append(("verdict", cycle.verdict))

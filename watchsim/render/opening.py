@@ -33,7 +33,7 @@ from watchsim.render.view import (
     upright,
     view,
 )
-from watchsim.scene.roles import frequency, keeps_time
+from watchsim.scene.roles import frequency, keeps_time, only_presses
 from watchsim.scene.scene import Scene
 from watchsim.simulation.trajectory import Array, Trajectory
 
@@ -148,6 +148,6 @@ def telling(found: Sequence[Phase], window: Window) -> float:
 def last_beats(run: Trajectory, share: float = 1.5) -> Window:
     """The last one and a half oscillations, or the last tenth where nothing keeps time, of the last stretch recorded."""
     start, end = recorded(run)[-1]
-    hertz = frequency(run.scene) if keeps_time(run.scene) else None
+    hertz = frequency(run.scene) if keeps_time(run.scene) and not only_presses(run.scene) else None
     length = share / hertz if hertz else 0.1 * (end - start)
     return max(start, end - length), end

@@ -524,19 +524,23 @@ def words_of(key: str) -> tuple[str, ...]:
 
 
 PLACES = ("x", "y")
+OF_PLACES = ("position", "gravity", "centre_of_mass", "axis")
 
 
 def in_words(key: str) -> str:
-    """A dotted path as it is said: "bodies.wheel.position.1" is "wheel position y", "torques.0.value" is "torque 1"."""
+    """A dotted path as it is said: "bodies.wheel.position.1" is "wheel position y"; one of several, as "torques.0.value", is
+    said as it is typed."""
     said: list[str] = []
+    before = ""
     for part in words_of(key):
         if not part.isdigit():
-            unsaid = part == "adjust" or part in (("value",) if said else ("design", "bodies"))
+            unsaid = part == "adjust" or part in (("value",) if said else ("design", "bodies", "scene"))
             said += [] if unsaid else [part.replace("_", " ")]
-        elif said and said[-1] == "position" and int(part) < len(PLACES):
+        elif before in OF_PLACES and int(part) < len(PLACES):
             said.append(PLACES[int(part)])
-        elif said:
-            said[-1] = f"{said[-1].removesuffix('s')} {int(part) + 1}"
+        else:
+            return key
+        before = part
     return " ".join(said) if said != ["of"] else "design"
 
 

@@ -65,6 +65,7 @@ PENALTY = 100.0  # on what is broken, in Nelder and Mead's merit
 TRIES = 64  # designs that are looked at for one that ticks
 LEVELS = 9  # designs of a front
 SOLVED = 1e-12  # of a range: where the root is
+EDGE, BEYOND = 1e-4, 3.0  # of a range, and ratio of ways: how closely a design that does not work is approached
 
 
 class _NoNumber(Exception):
@@ -598,30 +599,33 @@ class Search:
             here = off(z)
         except _NoNumber:
             return f"the scene itself does not work: {self._why(self.start)}"
-        step = 0.02 if z < 0.5 else -0.02
+        step, bad, root = 0.02 if z < 0.5 else -0.02, math.nan, math.nan
         for _ in range(TRIES):
             if here == 0.0:
                 return z, z
             if last is not None and here != last[1]:
-                secant = -1.3 * here * (z - last[0]) / (here - last[1])
-                step = math.copysign(min(abs(secant), 3.0 * abs(step) + 0.05), secant)
+                root = z - here * (z - last[0]) / (here - last[1])
+                step = math.copysign(min(1.3 * abs(root - z), 3.0 * abs(step) + 0.05), root - z)
             there = min(max(z + step, 0.0), 1.0)
-            while there != z:
-                try:
-                    value = off(there)
-                    break
-                except _NoNumber:
-                    why = self._why(np.array([there]))
-                    there = z + 0.5 * (there - z) if abs(there - z) > 1e-4 else z
-            if there == z:
+            if (bad - z) * (bad - there) <= 0.0 or abs(bad - there) < abs(0.5 * (bad - z)):  # nan: none is known
+                there = 0.5 * (z + bad)
+            # A straight line to the goal that leads far beyond what does not work will not end before it.
+            near = max(EDGE, abs(root - z) / BEYOND if (root - z) * (bad - z) > 0.0 else 0.0)
+            if there == z or abs(bad - z) < near:
                 break
+            try:
+                value = off(there)
+            except _NoNumber:
+                bad, why = there, self._why(np.array([there]))
+                continue
             if value * here <= 0.0:
                 return min(z, there), max(z, there)
             last, z, here = (z, here), there, value
         output, knob = self.outputs[0], self.knobs[0]
         at = knob.shown(float(self.at(np.array([z]))[0]))
         reached = f"{output.label} comes to {shown(output, here + self.limits[0].value)} at {knob.key} = {at}"
-        return f"{reached}{f', and beyond {why}' if why else ', where its limits end'}"
+        beyond = knob.shown(float(self.at(np.array([bad]))[0])) if why else ""
+        return f"{reached}{f', and at {beyond} {why}' if why else ', where its limits end'}"
 
     def _report(
         self, point: Array | None, message: str = "", starts: tuple[int, int] = (1, 1), active: tuple[str, ...] = ()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 import os
 import time
@@ -14,6 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.displays import notebook_html
+from watchsim.scene.errors import SceneError
+from watchsim.scene.keys import DESIGN
+from watchsim.scene.load import changed
 from watchsim.scene.read_settings import FUNCTION
 from watchsim.scene.scene import Scene
 from watchsim.simulation.runner import held_interrupts
@@ -139,7 +143,20 @@ def swept(
         {**points[number], **{name: rows[number].get(name) for name in (*columns, "verdict", "message")}}
         for number in sorted(rows)
     )
-    return Sweep(question.scene.title, tuple(axes), outputs, outcomes, len(rows) == len(points), time.perf_counter() - begun)
+    return Sweep(
+        _title(question.scene, axes), tuple(axes), outputs, outcomes, len(rows) == len(points), time.perf_counter() - begun
+    )
+
+
+def _title(scene: Scene, axes: Sequence[Axis]) -> str:
+    """That of the scene without what the axes change in it, as a number of teeth."""
+    titles = [scene.title]
+    for axis in axes:
+        for value in (axis.values[0], axis.values[-1]) if axis.key.startswith(f"{DESIGN}.") else ():
+            with contextlib.suppress(SceneError):  # the row of the point says why
+                titles.append(changed(scene, {axis.key: value}).title)
+    kept = [part for part in scene.title.split(", ") if all(part in one.split(", ") for one in titles)]
+    return ", ".join(kept) or scene.title
 
 
 def measured(outputs: Iterable[Output]) -> int | None:
