@@ -5,7 +5,10 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import ezdxf
+import ezdxf.math
 import pytest
+from proposal.assemblies import assembly, scene_of
 from proposal.escapements_by_hand import Anchor, star_and_jumper
 
 from watchsim.cli import main
@@ -124,3 +127,30 @@ def test_arbors_and_bores_show_pivots_in_any_language_and_order(wheel: str, anch
 @pytest.mark.parametrize("name", ["CENTER WHEEL", "roue de centre dents", "ANKER", "Speichen", "whole", "pivoted detent"])
 def test_other_names_show_none(name: str) -> None:
     assert not shows_pivot(name)
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_a_cylinder_runs_in_a_mirror_too(mirrored: bool, tmp_path: Path) -> None:
+    """Its balance was let go on the same side of either one, and a tooth ran past it at first."""
+    path = assembly(scene_of("cylinder"), tmp_path / "cylinder.dxf", "body")
+    document = ezdxf.readfile(path)
+    if mirrored:
+        for entity in document.modelspace():
+            entity.transform(ezdxf.math.Matrix44.scale(-1.0, 1.0, 1.0))
+        document.saveas(path)
+    found = tried([path])
+    assert (found.way, found.doubts) == (1 if mirrored else -1, ())
+
+
+def test_a_passing_spring_keeps_its_own_bore(tmp_path: Path) -> None:
+    """It lies over the detent, in which there is another one."""
+    scene = scene_of("detent")
+    path = assembly(scene, tmp_path / "detent.dxf", "body")
+    document = ezdxf.readfile(path)
+    points = document.modelspace().query("POINT")
+    for point, body in zip(points, [body for body in scene.bodies if body.motion != "fixed"], strict=True):
+        document.modelspace().add_circle(point.dxf.location, 0.05, dxfattribs={"layer": f"{body.name} foro"})
+        document.modelspace().delete_entity(point)
+    document.saveas(path)
+    found = propose([path])
+    assert found.doubts == () and {role.name: role.on.name for role in found.roles if role.on} == {"passing": "detent"}

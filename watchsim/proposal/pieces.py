@@ -27,7 +27,7 @@ from watchsim.geometry.loops import Loop, extents, winding
 from watchsim.geometry.primitives import Arc, Line, Point
 from watchsim.geometry.solids import area, section
 from watchsim.mechanism.overlap import chord_points, material, placed
-from watchsim.proposal.words import FIXED, part_of, shows_pivot
+from watchsim.proposal.words import FIXED, part_of, part_word, shows_pivot
 from watchsim.units import known_unit
 
 CROSSING = "crossing"  # the code of a finding
@@ -208,11 +208,17 @@ def _marks(drawing: Drawing) -> tuple[list[Mark], frozenset[str]]:
 
 def _around(mark: Mark, outlines: Sequence[Loop]) -> Loop | None:
     """The outline in which a mark lies: one about it, else the smallest; of the kind that its layer's name speaks of."""
-    kind = part_of(mark.layer)
-    fitting = (loop for loop in outlines if kind is None or part_of(loop.layer) in (kind, None))
-    sizes = {loop: abs(area(loop)) for loop in fitting if winding(loop, mark.at) != 0}
+    kind, word = part_of(mark.layer), part_word(mark.layer)
+    fitting = [loop for loop in outlines if word and part_word(loop.layer) == word]
+    fitting = fitting or [loop for loop in outlines if kind is None or part_of(loop.layer) in (kind, None)]
+    sizes = {loop: abs(area(loop)) for loop in fitting if _is_in(mark.at, loop)}
     about = [loop for loop in sizes if math.dist(section((loop,)).centroid, mark.at) < BORED * math.sqrt(sizes[loop])]
     return min(about or sizes, key=sizes.__getitem__, default=None)
+
+
+def _is_in(place: Point, loop: Loop) -> bool:
+    """In the outline, or on it."""
+    return winding(loop, place) != 0 or ring(chord_points(loop, DEVIATION * loop.length), place)[0] <= SAME
 
 
 def size_of(drawings: Sequence[Drawing]) -> float:

@@ -431,8 +431,9 @@ def start_of(roles: Sequence[Role], facings: Sequence[Facing], direction: int) -
     if swinging is not None:
         ways = SWINGS if turns_fully(swinging) else ANCHOR_SWINGS
         own = [facing for facing in facings if swinging in (facing.first, facing.second)]
+        side = direction if turns_fully(swinging) and first_of(roles, LEVER) is None else -1  # mirrored with the wheel
         for swing in (*ways, ways[0]):  # teeth may be too narrow for a wide swing
-            angles[swinging.name] = rest - swing
+            angles[swinging.name] = rest + side * swing
             waiting = locked(roles, facings, angles, direction)
             if clearance(own, angles) > 0.0 if turns_fully(swinging) else waiting is not None:
                 break

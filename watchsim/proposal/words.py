@@ -19,7 +19,7 @@ def _words(text: str) -> frozenset[str]:
 _PARTS = {
     WHEEL: "wheel gear pinion ratchet star cross rad gangrad steigrad ankerrad hemmungsrad hemmrad sperrrad sperrad stern "
     "trieb malteserkreuz roue rochet étoile pignon croix ruota stella pignone croce",
-    LEVER: "lever anchor detent passing anker hemmstück hebel ancre détente bascule ancora leva",
+    LEVER: "lever anchor detent passing anker hemmstück hebel wippe ancre détente bascule ancora leva",
     CLICK: "click pawl jumper follower tappet rack klinke sperrklinke sperrkegel raste springer fühler rechen cliquet sautoir "
     "palpeur râteau nottolino cricco cricchetto saltarello scatto",
     DRIVER: "driver crank finger cam snail kurbel mitnehmer nocken kurvenscheibe schnecke manivelle doigt came limaçon "
