@@ -97,6 +97,7 @@ def test_lengths_and_speeds_go_with_the_size_of_the_scene() -> None:
         "sunk": 6e-5,
         "extent": 3.6e-10,
         "speed_zero": 6e-8,
+        "speed_rest": 3e-8,
         "speed_drift": 6e-8,
         "force_zero": 1e-10,
         "accumulation_time": 1e-6,

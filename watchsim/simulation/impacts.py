@@ -67,7 +67,7 @@ def collide(model, state, island, m, options, jam_speed, scratch, record):
     if jam_speed == 0.0:
         ended = stop_repeated_rebounds(state.returning, state.clock.time, m, options, event, room.restitution)
     for _ in range(1 + m):
-        if not _solve(model, m, (jam_speed, options.speed_zero), work, event.closed, room, state.u, state.counts):
+        if not _solve(model, m, (jam_speed, options.speed_rest), work, event.closed, room, state.u, state.counts):
             copy(room.before, state.u)
             return False
         for row in range(2 * m):
@@ -385,7 +385,7 @@ def _end_chatter(model, state, island, m, options, scratch, record):
     before = kinetic_energy(model, state.u)
     taken = kinetic_energy(model, room.before) - before
     copy(state.u, room.before)
-    terms = (time, taken), options.speed_zero, state.instant.lenience
+    terms = (time, taken), options.speed_rest, state.instant.lenience
     found, r = end_chatter(model, state.u, m, *terms, work, event, room)
     count_problems(work.problem, state.counts)
     if found:

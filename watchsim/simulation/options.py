@@ -45,6 +45,7 @@ class Options(NamedTuple):
     sunk: float  # m: so far behind, where flat faces have let it. Large: accepts contacts on the far side; small: falls through
     extent: float  # m: how far beyond its primitive's end a contact counts. Large: sticks out; small: slips through joints
     speed_zero: float  # m/s: slower is zero. Large: freezes slow sliding; small: below the rounding of velocities
+    speed_rest: float  # m/s: a slower slip has friction of rest in an impact. Large: as `speed_zero`; small: rounding chooses
     speed_drift: float  # m/s: so much of a velocity may be the error of a step. Large: hides faults; small: reports rounding
     force_zero: float  # share of a contact's force terms that counts as zero. Large: late detachment; small: rounding decides
     accumulation_time: float  # s: rebounds that would end sooner are ended by rule. Large: changes timing; small: more impacts
@@ -73,6 +74,7 @@ def options_for(size: float, tolerance: float, longest: float, natural: float = 
         extent=EXTENT_PER_JOINT * JOINT_RESOLUTION * size,
         # Velocities drift off their contacts by about the tolerance within a step.
         speed_zero=max(SPEED_ZERO, min(SPEED_PER_TOLERANCE * tolerance, COARSEST_SPEED_ZERO)) * size / unit,
+        speed_rest=SPEED_ZERO * size / unit,
         speed_drift=max(SPEED_ZERO, SPEED_PER_TOLERANCE * tolerance) * size / unit,
         force_zero=FORCE_ZERO,
         accumulation_time=ACCUMULATION_TIME * unit,
