@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 import ezdxf
 import ezdxf.math
@@ -12,7 +13,7 @@ from proposal.assemblies import assembly, scene_of
 from proposal.escapements_by_hand import Anchor, star_and_jumper
 
 from watchsim.cli import main
-from watchsim.proposal import start
+from watchsim.proposal import start, trial
 from watchsim.proposal.propose import propose
 from watchsim.proposal.trial import tried
 from watchsim.proposal.words import shows_pivot
@@ -154,3 +155,31 @@ def test_a_passing_spring_keeps_its_own_bore(tmp_path: Path) -> None:
     document.saveas(path)
     found = propose([path])
     assert found.doubts == () and {role.name: role.on.name for role in found.roles if role.on} == {"passing": "detent"}
+
+
+def test_the_time_for_compiling_kernels_is_no_patience_lost(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The first trial after an installation was broken off before it began."""
+    clock = [0.0]
+    real = trial.simulate
+
+    def compiled_first(*args: Any, **named: Any) -> Any:
+        clock[0] += 2.0 * trial.PATIENCE
+        return real(*args, **named)
+
+    monkeypatch.setattr(trial, "simulate", compiled_first)
+    monkeypatch.setattr(trial.time, "process_time", lambda: clock[0])
+    assert tried([Anchor().draw(tmp_path / "anchor.dxf")]).doubts == ()
+
+
+def test_bores_for_screws_and_those_of_a_plate_are_no_pivots(tmp_path: Path) -> None:
+    path = Anchor(layers=("Zähne", "Bohrung", "Klauen", "Bohrung", "Anker")).draw(tmp_path / "anchor.dxf")
+    document = ezdxf.readfile(path)
+    space = document.modelspace()
+    space.add_lwpolyline([(-15, -15), (15, -15), (15, 25), (-15, 25)], close=True, dxfattribs={"layer": "Platine"})
+    for x, y, layer in ((-3, 14.6, "Bohrung"), (3, 14.6, "Bohrung"), (-14, -14, "Platine Bohrung"), (0, 20, "Platine Bohrung")):
+        space.add_circle((x, y), 0.2, dxfattribs={"layer": layer})
+    document.saveas(path)
+    found = propose([path])
+    assert found.doubts == () and [role.task for role in found.roles] == ["wheel", "oscillator", "fixed"]
+    anchor = found.roles[1].part.centre
+    assert anchor is not None and anchor.at == pytest.approx((0.0, 15.1665e-3), abs=1e-7)

@@ -24,7 +24,7 @@ _PARTS = {
     "palpeur râteau nottolino cricco cricchetto saltarello scatto",
     DRIVER: "driver crank finger cam snail kurbel mitnehmer nocken kurvenscheibe schnecke manivelle doigt came limaçon "
     "manovella dito camma chiocciola",
-    OSCILLATOR: "balance pendulum foliot unruh unruhe pendel schwinger balancier pendule bilanciere pendolo",
+    OSCILLATOR: "balance pendulum foliot unruh unruhe pendel balancier pendule bilanciere pendolo",
     FIXED: "banking bankings bank banks plate frame bridge wall stop stops fixed ground base cock anschlag anschläge platine "
     "brücke kloben gestell pont coq butée butées étoqueau étoqueaux platina ponte arresto arresti",
 }
@@ -59,7 +59,7 @@ LEAVES = _words("passing leaf goldfeder auslösefeder")
 DISCHARGES = _words("discharge discharging unlocking auslösestein dégagement")
 FACING = ((LEAVES, DISCHARGES), (TEETH, STONES), (TEETH, CLICKS), (FORK, PIN), (GUARD, ROLLER), (RESTING, ROLLER))
 # A circle on a layer so called shows where a part turns: its axis, its bore or the arbor in it.
-ARBORS = _words("arbor arbour staff shaft spindle welle arbre albero")
+ARBORS = _words("arbor arbour staff shaft spindle welle zapfen arbre albero")
 TURNING = MARKS | BORES | ARBORS
 COMPOUNDS = ("achse", "welle", "bohrung", "loch", "drehpunkt")  # in which German names end
 
