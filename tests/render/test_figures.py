@@ -414,6 +414,7 @@ def test_free_and_sliding_bodies_in_millimetres():
     assert disc[0][3][-1] == pytest.approx(1e3 * 0.5 * pull * 9.0)
     assert disc[1][3][-1] == pytest.approx(50.0)
     assert disc[5][3][-1] == pytest.approx(-math.degrees(pull * 3.0 / 0.05))
+    assert curves(plot_kinematics(slide_run(), quantities="angle"))[0][1] == "travel (mm)"  # from its position, not where it is
     slide = curves(plot_kinematics(slide_run(), quantities="velocity"))
     assert slide[0][1] == "velocity (mm/s)"
     assert slide[0][3][0] == pytest.approx(20.0)

@@ -155,7 +155,7 @@ def _spring(scene: Scene, spring: Spring) -> str:
         stiffness += f", more by {100.0 * spring.curb.share / (1.0 - spring.curb.share):.4g} % beyond its curb pins"
     if spring.cubic:
         stiffness += f" and {metric(spring.cubic, 'N/m³' if linear else 'N·m/rad³')}"
-    return f"{stiffness}, {show(hertz, 'Hz')}{beats}, at rest at {rest}{_stop(spring, linear)}"
+    return f"{stiffness}, {show(hertz, 'Hz')}{beats}, at rest at {'a travel of ' * linear}{rest}{_stop(spring, linear)}"
 
 
 def _stop(spring: Spring, linear: bool) -> str:

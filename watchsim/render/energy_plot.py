@@ -342,7 +342,7 @@ def _drives(run: Trajectory, names: list[str], window: Sequence[float] | None, w
             1e3 * moved if slides else np.degrees(moved), factor * drive, color=INK, linewidth=style.CURVE, gid=f"drive {name}"
         )
         style.title(axes, f"{name}, work {style.minus(metric(work, 'J', 4))}")
-        axes.set_xlabel(f"position of {name} (mm)" if slides else f"angle of {name} (°)", labelpad=1.5)
+        axes.set_xlabel(f"travel of {name} (mm)" if slides else f"angle of {name} (°)", labelpad=1.5)
         axes.set_ylabel(f"{'force' if slides else 'torque'} ({unit})", labelpad=1.5)
     return made
 

@@ -179,7 +179,8 @@ def channels(run: Trajectory, body: Body) -> list[Channel]:
     """The rows of panels of one body: one, and of a free body two."""
     first = run.slices[body.name].start
     if body.motion == "slide":
-        return [Channel(body, (first,), 1e3, *TRAVEL)]
+        units, names = TRAVEL
+        return [Channel(body, (first,), 1e3, units, names | {QUANTITIES[0]: "travel"})]  # from `position`, along its axis
     if body.motion == "free":
         place = Channel(body, (first, first + 1), 1e3, *TRAVEL, ("x", "y"))
         return [place, Channel(body, (first + 2,), 180.0 / math.pi, *ROTATION)]

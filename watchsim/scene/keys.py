@@ -280,12 +280,19 @@ SPRING: Keys = {
     "cubic": Key(units.ROTARY_CUBIC, units.LINEAR_CUBIC, doc="stiffness that grows with the square of the way from rest"),
     "coil": Key(doc="the hairspring as it bends, presses on its pivot and weighs", inner=WOUND, form=TABLE),
     "curb": Key(doc="two pins between which a hairspring plays", inner=CURB, form=TABLE),
-    "rest": Key(units.ANGLE, units.LENGTH, doc="where it does not act", instead_of=("preload",)),
+    "rest": Key(
+        units.ANGLE,
+        units.LENGTH,
+        doc="angle at which it does not act, of a slide its travel from position",
+        instead_of=("preload",),
+    ),
     "draw": Key(doc="the hairspring that pictures show", inner=COIL, form=TABLE),
     "against": _AGAINST,
     "leaf": Key(doc="a leaf that is the spring", inner=LEAF, form=TABLE, instead_of=("frequency", "stiffness")),
     "preload": Key(units.TORQUE, units.FORCE, doc="with which it presses at its stop, or at the start", instead_of=("rest",)),
-    "stop": Key(units.ANGLE, units.LENGTH, doc="where the body is stopped on its way to rest", absent="none"),
+    "stop": Key(
+        units.ANGLE, units.LENGTH, doc="angle, or travel, at which the body is stopped on its way to rest", absent="none"
+    ),
     "restitution": _number("of impacts on the stop", limits=(Limit(0.0, 1.0, "of impacts on the stop, lies between 0 and 1"),)),
 }
 TRAIN: Keys = {
