@@ -411,20 +411,20 @@ def test_the_title_leaves_out_what_is_swept():
     assert titles == ["Swiss lever, 28800 vph", scene.title]
 
 
-def test_labels_name_a_number_as_it_is_typed():
-    said = {"torques.0.value": "torques.0.value", "scene.gravity.1": "gravity y", "bodies.wheel.position.0": "wheel position x"}
+def test_labels_count_as_keys_do():
+    said = {"torques.0.value": "torque 0", "scene.gravity.1": "gravity y", "bodies.wheel.position.0": "wheel position x"}
     assert {key: in_words(key) for key in said} == said
     assert in_words("bodies.lever.adjust.STONES.turn") == "lever STONES turn" and in_words("design.teeth") == "teeth"
 
 
 def test_a_curve_in_usual_units_with_what_failed():
     found = words(plot_sweep(made(FRICTION)))
-    assert "contacts.0.friction" in found and "amplitude (°)" in found and "knocks" in found
+    assert "contact 0 friction" in found and "amplitude (°)" in found and "knocks" in found
 
 
 def test_a_family_and_a_map():
     figure = plot_sweep(made(TORQUE, DRAWING))
-    assert "torques.0.value magnitude (µN·m)" in words(figure)  # it turns clockwise; the curves run from weak to strong
+    assert "torque 0 magnitude (µN·m)" in words(figure)  # it turns clockwise; the curves run from weak to strong
     assert [sorted(line.get_xdata())[0] for line in figure.axes[0].get_lines()][:1] == [pytest.approx(1.0)]
     assert [text.get_text() for text in figure.legends[0].get_texts()] == ["a.dxf", "b.dxf"]
     other = Axis("springs.0.stiffness", tuple(1e-6 * (1.0 + 0.1 * i) for i in range(8)), "N·m/rad", "µN·m/rad")

@@ -41,8 +41,7 @@ def bands(phases: Iterable[Phase]) -> list[tuple[Phase, str]]:
         if phase.name == "locked":
             continue
         impulses += phase.name == "impulse"
-        if phase.end > phase.start:
-            found.append((phase, shade_of(AGAIN if phase.name == "impulse" and impulses == 2 else phase.name)))
+        found.append((phase, shade_of(AGAIN if phase.name == "impulse" and impulses == 2 else phase.name)))
     return found
 
 

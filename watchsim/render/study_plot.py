@@ -155,7 +155,7 @@ def _weak_to_strong(sweep: Sweep) -> Sweep:
     for axis in sweep.axes:
         values = [abs(value) for value in axis.values if not isinstance(value, str) and value <= 0.0]
         if axis.key.startswith("torques.") and axis.key.endswith(".value") and len(values) == len(axis.values):
-            key = f"{axis.key} magnitude"
+            key = f"{axis.key}.magnitude"
             axes = tuple(replace(one, key=key, values=tuple(values)) if one is axis else one for one in sweep.axes)
             sweep = replace(sweep, axes=axes, rows=tuple({**row, key: abs(row[axis.key])} for row in sweep.rows))
     return sweep

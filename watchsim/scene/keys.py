@@ -535,8 +535,8 @@ OF_PLACES = ("position", "gravity", "centre_of_mass", "axis")
 
 
 def in_words(key: str) -> str:
-    """A dotted path as it is said: "bodies.wheel.position.1" is "wheel position y"; one of several, as "torques.0.value", is
-    said as it is typed."""
+    """A dotted path as it is said: "bodies.wheel.position.1" is "wheel position y", "torques.0.value" is "torque 0": counted as
+    it is typed."""
     said: list[str] = []
     before = ""
     for part in words_of(key):
@@ -545,8 +545,8 @@ def in_words(key: str) -> str:
             said += [] if unsaid else [part.replace("_", " ")]
         elif before in OF_PLACES and int(part) < len(PLACES):
             said.append(PLACES[int(part)])
-        else:
-            return key
+        elif said:
+            said[-1] = f"{said[-1].removesuffix('s')} {part}"
         before = part
     return " ".join(said) if said != ["of"] else "design"
 
