@@ -141,6 +141,28 @@ def test_the_player_plays_inside_a_frame(tmp_path: Path) -> None:
         assert page.said == [] and all(address.startswith(("file:", "about:", "data:")) for address in page.asked)
 
 
+@pytest.mark.slow
+def test_the_player_waits_for_a_frame_that_has_no_size_yet(tmp_path: Path) -> None:
+    """A cell that is folded in, or a frame not laid out yet: the first picture failed, and no other followed."""
+    path = tmp_path / "folded.html"
+    player = watch_run().player()._repr_html_()
+    ready = "<script>window.watchsim = true</script>"
+    path.write_text(f'<!DOCTYPE html><html><body>{ready}<div id="cell" style="width: 0">{player}</div></body></html>', encoding="utf-8")
+    with opened(path) as page:
+        page.wait_for_timeout(800)
+        assert page.frames[1].evaluate("document.getElementById('picture').clientWidth") == 0
+        page.evaluate("document.getElementById('cell').style.width = '900px'")
+        for _ in range(40):
+            page.wait_for_timeout(250)
+            if page.frames[1].evaluate("watchsim.pace().drawn > 0"):
+                break
+        before = page.frames[1].evaluate("document.getElementById('scrub').value")
+        page.frames[1].click("#play")
+        page.wait_for_timeout(800)
+        assert page.frames[1].evaluate("document.getElementById('scrub').value") != before
+        assert page.said == []
+
+
 def test_a_figure_shows_itself() -> None:
     pixels = iio.imread(io.BytesIO(ws.plot_kinematics(watch_run())._repr_png_()))
     assert pixels.shape[1] > 600 and pixels.std() > 1.0

@@ -128,8 +128,8 @@ const open = (told) => {
   $("space").disabled = !solids.any; $("label").disabled = !names.any; $("adapt").disabled = !clock.uneven;
   $("push").disabled = !contacts.known; $("tick").disabled = !sound.any; $("back").disabled = $("next").disabled = !data.events.length;
   readLook();
+  unseen = !old;
   resize();
-  if (!old) view.open();
   const shown = old && old.data.bodies[old.plots.body], first = data.bodies.findIndex((body, b) => shown && body.name === shown.name && motion.rows[b]);
   const usual = first >= 0 ? first : data.ranks.find((b) => motion.rows[b]) ?? curves.movers[0];
   document.querySelector(".plots").hidden = usual === undefined;
@@ -162,11 +162,13 @@ const showPlots = (b) => {
   readLook(); plots.stale(); dirty = true;
 };
 
+let unseen = false; // a frame of a notebook may have no size yet when the player starts in it
 const resize = () => {
   const ratio = window.devicePixelRatio || 1, width = stage.clientWidth, height = stage.clientHeight;
   if (!width || !height || !view) return;
   stage.width = Math.round(width * ratio); stage.height = Math.round(height * ratio);
   view.resize(width, height, ratio);
+  if (unseen) { unseen = false; view.open(); }
   plots.stale(); dirty = true;
 };
 
@@ -178,7 +180,7 @@ const frame = (now) => {
   const seconds = Math.min((now - last) / 1000, 0.1);
   if (last && now > last) fps = 0.95 * fps + 0.05 * (1000 / (now - last));
   last = now;
-  if (!player) { requestAnimationFrame(frame); return; }
+  if (!player || !view.sized) { requestAnimationFrame(frame); return; }
   const moving = player.playing || (dirty && now - changed < STILL);
   if (player.tick(seconds)) dirty = true;
   if (player.t !== cursor) { plots.hold(player.t); cursor = player.t; } // stepped or played out of what the plots show

@@ -5,7 +5,7 @@ const WHOLE = 0.2, OVER = 84, UNDER = 56; // of the width that the whole takes b
 class View {
   constructor(data) {
     this.data = data.view;
-    this.width = this.height = 1; this.ratio = 1;
+    this.width = this.height = 1; this.ratio = 1; this.sized = false;
     this.zoom = 1; this.shift = [0, 0]; // of the picture, in metres of the mechanism
     this.turn = this.data.turn;
     this.centre = [0, 0]; this.base = 1;
@@ -16,7 +16,7 @@ class View {
   get scale() { return this.base * this.zoom; } // CSS pixels per metre
 
   resize(width, height, ratio, band = BAND) {
-    Object.assign(this, { width, height, ratio, band });
+    Object.assign(this, { width, height, ratio, band, sized: true });
     if (this.data.follow) { this.base = Math.min(height, width * 0.5625) / this.data.follow.sight; return; }
     const { boxes } = this.data, room = boxes.map((box) => box.slice(1)), shown = this.opens ? this.data.close : room;
     const k = this.turned(shown);
