@@ -145,9 +145,9 @@ def test_the_player_plays_inside_a_frame(tmp_path: Path) -> None:
 def test_the_player_waits_for_a_frame_that_has_no_size_yet(tmp_path: Path) -> None:
     """A cell that is folded in, or a frame not laid out yet: the first picture failed, and no other followed."""
     path = tmp_path / "folded.html"
-    player = watch_run().player()._repr_html_()
+    cell = f'<div id="cell" style="width: 0">{watch_run().player()._repr_html_()}</div>'
     ready = "<script>window.watchsim = true</script>"
-    path.write_text(f'<!DOCTYPE html><html><body>{ready}<div id="cell" style="width: 0">{player}</div></body></html>', encoding="utf-8")
+    path.write_text(f"<!DOCTYPE html><html><body>{ready}{cell}</body></html>", encoding="utf-8")
     with opened(path) as page:
         page.wait_for_timeout(800)
         assert page.frames[1].evaluate("document.getElementById('picture').clientWidth") == 0
