@@ -406,6 +406,14 @@ def test_against_a_long_run(profile):
     assert cycle.simulated_s < 150.0
 
 
+def test_a_swing_that_a_pallet_ends_in_the_teeth():
+    """Heard at the turning point itself, by rounding before or after it: no first noise of the half swing that begins there."""
+    scene = ws.designs.recoil_anchor(torque="3.168 mN·m", drop="0.2°").scene()
+    cycle, rest = steady(scene), mean_over(ws.simulate(scene, 200.0, record="statistics"))
+    assert abs(cycle.multipliers[0]) < 1e-6
+    assert cycle.beat_error_ms == pytest.approx(rest.beat_error_ms, abs=1e-3)
+
+
 def test_too_little_torque_stops_it():
     cycle = steady(ws.load(ws.profiles_dir() / "graham").set("torques.0.value", "-1 µN·m"))
     assert (cycle.found, cycle.verdict) == (False, "stops")
