@@ -23,7 +23,7 @@ from watchsim.cli import main
 from watchsim.render.study_plot import plot_sweep
 from watchsim.scene.keys import in_words
 from watchsim.studies.axes import Axis, axes_from_texts, axes_from_values, slug
-from watchsim.studies.point import Question, outputs_named
+from watchsim.studies.point import Question, function_of, outputs_named
 from watchsim.studies.sweep import Sweep, swept
 from watchsim.studies.workers import NAME, Here
 
@@ -440,3 +440,12 @@ def test_what_cannot_be_drawn():
 
 def test_from_the_package():
     assert ws.plot_sweep is plot_sweep
+
+
+def test_the_least_draw_is_not_called_as_that_on_the_bank():
+    """13° by the design, two degrees of travel less at the corner."""
+    drawn = ws.designs.swiss_lever()
+    (output,) = outputs_named(["draw"])
+    assert drawn.dimensions["draw"] == "13°"
+    assert function_of(drawn.scene(), 1)[output.column] == pytest.approx(11.0, abs=0.01)
+    assert output.label == "least draw from bank to corner"

@@ -12,6 +12,7 @@ import watchsim as ws
 from watchsim.cli import main
 from watchsim.scene.load import changed
 from watchsim.studies.point import answer
+from watchsim.studies.study_report import tolerance_text
 from watchsim.studies.tolerance import finished, sample_scene
 from watchsim.studies.tolerance_plan import plan_of
 
@@ -68,6 +69,20 @@ def test_the_study_says_what_json_promises(whole):
     assert "torque 0" in whole.message
     json.dumps(numbers, allow_nan=False)
     assert "amplitude (°)" in whole._repr_html_() and "<img" in whole._repr_html_()
+
+
+def test_rank_correlations_have_their_reason_and_their_sign(desk, whole):
+    """A friction for each contact, these correlated: no shares of variance, and bars on both sides of 0."""
+    assert "rank correlations" not in tolerance_text(whole)
+    text = (desk / "scene.toml").read_text(encoding="utf-8")
+    one, bound = '"±0.03", group = "oil" }', '"±0.03", correlated = { "torques.0.value" = %g } }'
+    (desk / "bound.toml").write_text(text.replace(one, bound % 0.5, 1).replace(one, bound % 0.1, 1), encoding="utf-8")
+    study = ws.tolerance(desk / "bound.toml", 32)
+    assert "  rank correlations, not shares: inputs are correlated\n" in tolerance_text(study)
+    ranks = {contribution.rank for contribution in study.contributions["amplitude_deg"]}
+    assert min(ranks) < 0.0 < max(ranks)
+    bars = {patch.get_width() for axes in ws.plot_tolerance(study).axes for patch in axes.patches if patch.get_height() == 0.7}
+    assert ranks <= bars
 
 
 def test_the_linear_prediction_is_that_of_the_sensitivities(desk, whole):

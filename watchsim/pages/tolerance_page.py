@@ -97,6 +97,7 @@ def _contributions(study: ToleranceStudy) -> list[Content]:
             for one in each[:MOST]
         ]
         known = f", {_percent(study.explained[name])} of the variance explained" if name in study.explained else ""
+        known += f", rank correlations only: {why}" if (why := study.why_ranks(name)) else ""
         found.append(table(("", "alone", "total", "± ", "linear", "rank"), rows, f"{labels.get(name, name)}{known}"))
     return found
 

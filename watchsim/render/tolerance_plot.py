@@ -108,18 +108,20 @@ def _key(figure: Any, samples: Samples) -> None:
 
 
 def _bars(axes: Axes, label: str, each: tuple[Contribution, ...], explained: float) -> None:
-    """First-order and, paler, total indices; rank correlations where inputs are correlated."""
+    """First-order and, paler, total indices; rank correlations with their signs where there are none."""
     ranks = each[0].total is None
     shown = [one for one in each if ranks or (one.total or 0.0) >= LEAST][:MOST_BARS]
     names = [in_words(one.key) for one in shown]
-    totals = np.array([abs(one.rank) if ranks else one.total for one in shown], float)
+    totals = np.array([one.rank if ranks else one.total for one in shown], float)
     firsts = np.array([0.0 if one.first is None else one.first for one in shown])
     places = np.arange(len(shown))
     axes.barh(places, totals, height=0.7, color=style.SERIES[5])
     axes.barh(places, firsts, height=0.4, color=style.GOOD)
     axes.set_yticks(places, names, fontsize=style.SMALL)
     axes.set_ylim(max(len(shown), 3) - 0.4, -0.6)
-    axes.set_xlim(0.0, 1.0)
+    axes.set_xlim(-1.0 if ranks else 0.0, 1.0)
+    if ranks:
+        axes.axvline(0.0, color=FAINT, linewidth=style.HAIR)
     style.title(axes, label)
     known = "rank correlation" if ranks else f"share; {100.0 * explained:.3g} % explained"
     axes.set_xlabel(known, fontsize=style.SMALL)

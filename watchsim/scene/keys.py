@@ -474,7 +474,7 @@ WATCH: Keys = {
     "thermal": Key(doc="how its numbers change with the temperature", inner=THERMAL, form=TABLE),
 }
 EXPECTATION: Keys = {
-    "value": Key(doc="what a run must give; with `tolerance`"),
+    "value": Key(doc="what a run must give; with `tolerance`. `draw` is the least, bank to corner"),
     "tolerance": Key(doc="how far it may be off", limits=_above_zero("")[:1]),
     "min": Key(doc="the least that it may give, instead of `value`"),
     "max": Key(doc="the most that it may give"),

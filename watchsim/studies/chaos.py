@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+FEWEST = 4  # samples with the output for each input
 NODES = 400  # at which a distribution is looked at for its polynomials
 HIGHEST = 12  # degree
 MOST_TERMS = 1200  # that are looked at; more take long and are found by chance
@@ -127,7 +128,7 @@ def indices(basis: Basis, output: Floats, owner: Ints, sequence: Ints) -> Indice
     sequence  by sample: which of the replications it belongs to, by which errors are judged (delete-one-group jackknife)
     """
     rows = np.flatnonzero(np.isfinite(output))
-    if len(rows) < 4 * len(set(owner.tolist())) or float(np.ptp(output[rows])) == 0.0:
+    if len(rows) < FEWEST * len(set(owner.tolist())) or float(np.ptp(output[rows])) == 0.0:
         return None
     y = output[rows] - output[rows].mean()
     scale = float(y.std())

@@ -42,6 +42,8 @@ class Output:
     has_error: bool = True
 
 
+# A design's dimension of the name draw is that on the bank; towards the corner it falls.
+LABELS = {"draw": "least draw from bank to corner"}
 OUTPUTS = {
     one.name: one
     for one in (
@@ -50,7 +52,7 @@ OUTPUTS = {
         Output("beat_error", "beat_error_ms", "beat error", "ms"),
         Output("period", "period_s", "period", "s"),
         Output("multiplier", "multiplier", "multiplier", "", has_error=False),
-        *(Output(name, f"{name}_deg", name.replace("_", " "), "°", has_error=False) for name in FUNCTION),
+        *(Output(name, f"{name}_deg", LABELS.get(name, name.replace("_", " ")), "°", has_error=False) for name in FUNCTION),
     )
 }
 USUAL = ("amplitude", "rate", "beat_error")

@@ -137,13 +137,16 @@ def tolerance_text(found: ToleranceStudy) -> str:
     lines += aligned(head, body)
     for name, each in found.contributions.items():
         known = f", {100.0 * found.explained[name]:.3g} % explained" if name in found.explained else ""
+        known += " (rank correlations)" if found.why_ranks(name) else ""
         notable = [
-            f"{one.key} {100.0 * one.total:.3g} %" if one.total is not None else f"{one.key} (rank correlation {one.rank:.2f})"
+            f"{one.key} {100.0 * one.total:.3g} %" if one.total is not None else f"{one.key} {signed(one.rank, 2)}"
             for one in each[:MOST_TOLD]
             if one.total is None or one.total >= LEAST_TOLD
         ]
         label = by_column[name].label if name in by_column else WHETHER[name]
         lines.append(f"  {label}{known}: {', '.join(notable) or 'nothing stands out'}")
+    why = dict.fromkeys(found.why_ranks(name) for name in found.contributions)
+    lines += [f"  rank correlations, not shares: {words}" for words in why if words]
     lines += [f"  {words}: {number}" for words, number in found.failures.items()]
     split = ", ".join(f"{name} {rounded(1e3 * value)} ms" for name, value in found.seconds.items())
     return "\n".join([*lines, f"  a sample takes {rounded(1e3 * sum(found.seconds.values()))} ms of one processor: {split}"])

@@ -42,6 +42,11 @@ class Limit:
         """Whether it is of the geometry of function, which is not measured of every sample else."""
         return self.expectation.key in FUNCTION
 
+    @property
+    def label(self) -> str:
+        """The output in words."""
+        return next(output.label for output in OUTPUTS.values() if output.column == self.column)
+
     def margins(self, values: Floats) -> Floats:
         """How far inside (n, ends) the values lie, in the unit of the promise; negative outside."""
         low, high = self.expectation.bounds
@@ -51,7 +56,7 @@ class Limit:
     def missed(self, value: float | None) -> str:
         """ "amplitude too low"; "" where it is kept."""
         low, high = self.expectation.bounds
-        name = self.expectation.key.replace("_", " ")
+        name = self.label
         if value is None:
             return f"{name} not measurable"
         return f"{name} too low" if value * self.factor < low else f"{name} too high" if value * self.factor > high else ""

@@ -19,7 +19,7 @@ from watchsim.analysis.verdict_kinds import TICKS
 from watchsim.displays import notebook_html
 from watchsim.scene.keys import in_words
 from watchsim.scene.roles import timekeeper
-from watchsim.studies.chaos import Basis, indices
+from watchsim.studies.chaos import FEWEST, Basis, indices
 from watchsim.studies.point import OUTPUTS, Row
 from watchsim.studies.sampling import Floats, Space, deviation
 from watchsim.studies.sensitivity import SMOOTH
@@ -123,6 +123,16 @@ class ToleranceStudy:
     def yield_high(self) -> float:
         """The upper end of its interval."""
         return self.shares["yield"].high
+
+    def why_ranks(self, name: str) -> str:
+        """Why what contributes to a column, "ticks" or "good" has rank correlations and no shares; "" where it has shares."""
+        if self.contributions[name][0].total is not None:
+            return ""
+        if self.plan.space.correlated:
+            return "inputs are correlated"
+        if self.plan.shifted is not None:
+            return "samples are drawn towards failures"
+        return f"Sobol indices need {FEWEST * len(self.contributions[name])} samples that have the output"
 
     def __repr__(self) -> str:
         return f"<Tolerances of {self.title!r}: {self.good} of {self.samples} good; {self.message}>"
@@ -398,7 +408,7 @@ def _worst(samples: Samples) -> Iterable[dict[str, Any]]:
     """The samples farthest out: those that do not tick first, then by how far outside, or near, the limits they are."""
 
     def reserve(i: int) -> float:
-        if samples.wrong[i] and not any(samples.wrong[i].startswith(one.expectation.key.replace("_", " ")) for one in limits):
+        if samples.wrong[i] and not any(samples.wrong[i].startswith(one.label) for one in limits):
             return -np.inf
         margins = [
             (one.margins(np.array([value])) / sizes[one.column]).min()
