@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from analysis.made_beats import lever_run
+from escapement.made import one_faced_anchor
 from every_time import few
 
 import watchsim as ws
@@ -213,6 +214,15 @@ def test_what_has_no_beats_says_so():
     assert timeline(run) == []
     with pytest.raises(ValueError, match="nothing in this scene swings"):
         shown_beats(run)
+
+
+def test_an_anchor_needs_its_lift_angle_and_then_has_beats(tmp_path: Path) -> None:
+    """What swings and holds a wheel itself may be a click: the scene says which, and is said to be to."""
+    scene, *_ = one_faced_anchor(tmp_path)
+    with pytest.raises(ValueError, match="whether pendulum, which touches wheel itself, is its anchor is not known"):
+        shown_beats(simulate(scene, 5.0))
+    named = shown_beats(simulate(scene.set("timegrapher.lift_angle", "3°"), 5.0))
+    assert "recoil" in {stage.name for beat in named for stage in beat.stages}
 
 
 def test_the_lock_is_counted_once_where_the_lever_is_on_its_bank_before_it():

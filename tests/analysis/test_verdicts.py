@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from analysis.made_beats import DEGREE, PERIOD, Events, balance_only, lever_run, lever_scene, polygon, star
 from analysis.made_faults import chipped, knocked, renamed, swiss, toothless, turned_over, unguarded
+from escapement.made import one_faced_anchor
 from every_time import few
 from profiles.led_wheel import polygon as outline
 from scipy.integrate import quad
@@ -132,6 +133,19 @@ def test_a_swing_that_ends_on_the_wheel_is_no_tick(drive, restitution):
     beyond = math.copysign(math.radians(0.05), reached)
     assert blocked(scene, reached + beyond) and not blocked(scene, reached - beyond)
     assert "30 of its 60 half swings end with a blow" in ws.steady(scene).message
+
+
+@pytest.mark.parametrize("duration", [29.0, 29.5, 30.0])
+def test_a_blow_knocks_though_rounding_puts_the_turn_after_it(duration, tmp_path):
+    """A tooth between pallet and wheel ends every second swing, some of these 1e-14 s before the anchor turns round; in the
+    window judged swings are even or odd in number."""
+    run = simulate(one_faced_anchor(tmp_path)[0].set("torques.0.value", "-0.7 mN·m"), duration)
+    found, turned = verdict(run), run.events[(run.events["kind"] == EventKind.TURN) & (run.events["body"] == 1)]["t"]
+    blows = run.events[run.events["kind"] == EventKind.IMPACT]["t"]
+    waits = np.array([(t - blows[blows <= t]).min(initial=1.0) for t in turned.tolist()])
+    assert ((waits > 0.0) & (waits < 1e-12)).any()
+    assert (found.name, found.body) == ("knocks", "pendulum")
+    assert found.count == pytest.approx((waits < 1e-12).sum(), abs=1)
 
 
 def test_a_swing_that_ends_by_itself_is_none():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 from watchsim.construction import registry as known
 from watchsim.construction.swiss_lever import swiss
@@ -11,6 +12,7 @@ from watchsim.construction.swiss_lever_outlines import Swiss
 from watchsim.designs import Maker
 from watchsim.geometry.primitives import Point
 from watchsim.scene.forces import Side
+from watchsim.scene.load import load
 from watchsim.scene.scene import Body, Scene
 
 
@@ -77,3 +79,60 @@ def renamed_scene(scene: Scene, names: dict[str, str], layers: dict[str, str]) -
         torques=tuple(replace(one, body=names[one.body]) for one in scene.torques),
         damping=tuple(replace(one, body=names[one.body]) for one in scene.damping),
     )
+
+
+TIP = 15.0  # mm
+ANCHOR = [
+    *((-9.545677457, -9.511799926), (-9.330314371, -7.466982013), (-1.8, -1.8), (1.8, -1.8), (9.230227526, -6.525376066)),
+    *((10.504584614, -10.465144552), (11.108802344, -10.568032352), (12.430227526, -4.325376066), (2.2, 2.2), (-2.2, 2.2)),
+    *((-13.853712463, -8.557271466), (-13.553712463, -10.557271466)),
+]
+
+
+def one_faced_anchor(folder: Path) -> tuple[Scene, list[Point], list[Point]]:
+    """A clock whose anchor has one flat face on each pallet, for recoil and impulse, written into a folder, and the corners of
+    wheel and anchor, mm. Drawn for a lift of 3°, let-offs at ±1.5°, and a drop of 1.5° of the wheel, which turns clockwise."""
+    tooth = ((11.6, 98.5), (11.6, 106.0 + 1.0 / 3.0), (TIP, 103.0 + 1.0 / 3.0), (TIP, 103.0 + 5.0 / 6.0))
+    polar = [(radius, math.radians(angle + 360.0 * k / 27.0)) for k in range(27) for radius, angle in tooth]
+    teeth = [(radius * math.cos(angle), radius * math.sin(angle)) for radius, angle in polar]
+
+    def written(corners: list[Point]) -> str:
+        return ", ".join(f'["{x!r} mm", "{y!r} mm"]' for x, y in corners)
+
+    text = f"""[scene]
+schema = 1
+gravity = ["0 m/s²", "-9.81 m/s²"]
+
+[bodies.wheel]
+polygon = [{written(teeth)}]
+motion = "pivot"
+position = ["0 mm", "0 mm"]
+inertia = "300 g·mm²"
+angle = "-4°"
+
+[bodies.pendulum]
+polygon = [{written(ANCHOR)}]
+motion = "pivot"
+position = ["0 mm", "20.62213808 mm"]
+mass = "0.3 kg"
+inertia = "0.0186 kg·m²"
+centre_of_mass = ["0 mm", "-248 mm"]
+angle = "3°"
+
+[[torques]]
+body = "wheel"
+value = "-0.35 mN·m"
+
+[[damping]]
+body = "pendulum"
+q_factor = 150
+
+[[contacts]]
+between = ["wheel", "pendulum"]
+friction = 0.1
+
+[run]
+duration = "20 s"
+"""
+    (folder / "scene.toml").write_text(text, encoding="utf-8")
+    return load(folder), teeth, ANCHOR

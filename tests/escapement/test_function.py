@@ -10,7 +10,7 @@ from dataclasses import fields, replace
 
 import pytest
 import shapely
-from escapement.made import mirrored_scene, renamed_scene, swiss_scene, turned_scene
+from escapement.made import mirrored_scene, one_faced_anchor, renamed_scene, swiss_scene, turned_scene
 from every_time import few
 from reference import measure_lever
 from shapely import affinity
@@ -271,10 +271,10 @@ def outline(scene: Scene, body: str, layer: str, scale: float) -> shapely.Geomet
     return shapely.union_all([shapely.Polygon(polyline(one, 1e-10) * scale) for one in loops])
 
 
-def stops_at(scene: Scene, pendulum: float, free: float) -> float:
+def stops_at(scene: Scene, pendulum: float, free: float, layers: tuple[str, str] = ("PALLETS", "TEETH")) -> float:
     """The wheel's angle (°) against the anchor, turned clockwise from `free`, by bisection with polygons."""
-    pallets = outline(scene, "pendulum", "PALLETS", 1.0)
-    teeth = outline(scene, "wheel", "TEETH", 1.0)
+    pallets = outline(scene, "pendulum", layers[0], 1.0)
+    teeth = outline(scene, "wheel", layers[1], 1.0)
     anchor = affinity.translate(affinity.rotate(pallets, pendulum, origin=(0, 0)), *scene.body("pendulum").position)
 
     def clear(angle: float) -> bool:
@@ -327,6 +327,24 @@ def test_recoil_is_what_polygons_say(name):
         back = stops_at(scene, side * swung, free) - stops_at(scene, side * released, free)
         assert back > 0.05
         assert math.degrees(function.pallets[k].recoil.value) == pytest.approx(back, abs=2e-4)
+
+
+def test_an_anchor_with_one_face_for_recoil_and_impulse_has_lift(tmp_path):
+    """It drives all the way from where a tooth drops onto it to where it lets go; started deep in the teeth, as at 3°."""
+    scene, *_ = one_faced_anchor(tmp_path)
+    for one in (scene, mirrored_scene(scene), scene.set("bodies.pendulum.angle", "-1.6°").set("bodies.wheel.angle", "0°")):
+        function = measure(one)
+        assert [math.degrees(angle) for angle in function.swung] == pytest.approx([3.0, -3.0], abs=1e-3)
+        for found in function.pallets:
+            assert degrees(found.lift) == pytest.approx(3.0, abs=1e-4) and degrees(found.lock) == pytest.approx(0.0, abs=1e-6)
+            assert degrees(found.lift_stone) == pytest.approx(degrees(found.lift), abs=1e-9)
+            assert degrees(found.drop) == pytest.approx(1.5, abs=1e-3)
+    function, layers = measure(scene), ("polygon", "polygon")
+    for k, side in enumerate(function.sides):
+        free = math.degrees(function.passages[k].start.wheel) + 0.5
+        out, dropped, before = (stops_at(scene, side * angle, free, layers) for angle in (3.0, 1.502, 1.498))
+        assert degrees(function.pallets[k].recoil) == pytest.approx(out - dropped, abs=0.01)
+        assert before - dropped == pytest.approx(1.5, abs=0.02)  # let off the other pallet in between
 
 
 def test_it_is_the_same_turned_and_seen_from_behind():

@@ -10,6 +10,7 @@ from typing import Any
 import ezdxf
 import ezdxf.math
 import pytest
+from escapement.made import one_faced_anchor
 from proposal.assemblies import assembly, scene_of
 
 from watchsim.cli import main
@@ -266,6 +267,17 @@ def test_where_pins_show_no_direction_both_are_tried(mirrored: bool, tmp_path: P
     assert found.doubts == ()
     (value,) = (guess.value for guess in found.guesses if guess.key == "torques.0.value")
     assert value.startswith('"-') != mirrored
+
+
+def test_teeth_that_lock_either_way_are_driven_as_they_lean(tmp_path: Path) -> None:
+    """One flat face on each pallet locks and drives both ways: the guesses of a trial do not outweigh the lean of the tips."""
+    _, teeth, anchor = one_faced_anchor(tmp_path)
+    pallets = [(x, y + 20.62213808) for x, y in anchor]
+    path = drawing(tmp_path / "clock.dxf", WHEEL=[teeth, (0.0, 0.0, 1.0)], ANCHOR=[pallets, (0.0, 20.62213808, 0.8)])
+    found = tried([path])
+    (value,) = (guess.value for guess in found.guesses if guess.key == "torques.0.value")
+    assert value.startswith('"-')
+    assert "lock and drive either way" in found.doubts[-1]
 
 
 def test_a_pendulum_drawn_aside_hangs_down_and_beats_by_its_length(tmp_path: Path) -> None:

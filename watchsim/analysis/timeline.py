@@ -14,7 +14,7 @@ from watchsim.analysis.flows import Flows, Losses, flows, friction_by_pair, impa
 from watchsim.analysis.phases import NAMES, Phase, Phases, phase_columns
 from watchsim.analysis.timing import Beats, beats, between, contact_columns, nominal_period
 from watchsim.mechanism.compile import Compiled, compile_scene
-from watchsim.scene.roles import Roles, drive_direction, pallet_name, with_anchor
+from watchsim.scene.roles import Roles, drive_direction, pallet_name, partners, with_anchor
 from watchsim.scene.scene import STATISTICS
 from watchsim.simulation import EVENT_DRIVEN
 from watchsim.simulation.trajectory import Array, Trajectory
@@ -318,6 +318,11 @@ def shown_beats(run: Trajectory, window: Sequence[float] | None = None, rubbed: 
     if parts.wheel is None:
         raise ValueError(f"phases are those of an escapement, and no driven wheel keeps {name} swinging")
     if parts.lever is None:
+        if parts.wheel in partners(run.scene, name):
+            raise ValueError(
+                f"whether {name}, which touches {parts.wheel} itself, is its anchor is not known: say so by "
+                "timegrapher.lift_angle, the angle from where one pallet lets go of a tooth to where the other does"
+            )
         raise ValueError(f"phases exist where there is a lever or an anchor; none stands between {parts.wheel} and {name}")
     if not knows_energies(run):
         raise ValueError("a timeline needs an event-driven run with all its events kept")

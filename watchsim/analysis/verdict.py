@@ -236,24 +236,34 @@ def knocking(watch: Watch) -> Verdict | None:
     return Verdict(KNOCKS, words, blows.first, watch.oscillator, str(pair), drive, blows.count)
 
 
-def blows_that_turn(events: Events, touching: Bits, turned: Array) -> Events:
-    """Those at which the oscillator turned back, at the times `turned` (s); `touching`: by contact, whether it is its own.
+AT_ONCE = 1e-9  # s: a blow that leaves a rest of the velocity, if only by rounding, is followed by the turn, not met by it
+
+
+def blows_that_turn(events: Events, touching: Bits, turned: Array) -> tuple[Events, Bits]:
+    """Those with which the oscillator turned back, and at which of the times `turned` (s, rising) it did so; `touching`: by
+    contact, whether it is its own.
 
     What turns back by itself is at rest then, and strikes nothing.
     """
-    blows: Events = events[np.isin(events["kind"], LOSSES) & touching[events["contact"]] & np.isin(events["t"], turned)]
-    return blows
+    blows: Events = events[np.isin(events["kind"], LOSSES) & touching[events["contact"]]]
+    if not len(turned):
+        return blows[:0], np.zeros(0, bool)
+    next_turn = np.minimum(np.searchsorted(turned, blows["t"]), len(turned) - 1)
+    wait = turned[next_turn] - blows["t"]
+    at_once = (wait >= 0.0) & (wait <= AT_ONCE)
+    return blows[at_once], np.isin(np.arange(len(turned)), next_turn[at_once])
 
 
 def _stopped_short(watch: Watch, start: float) -> Knocks | None:
     """None where fewer than half of the swings from `start` (s) on end with a blow."""
     run, found = watch.run, watch.found
     touching = np.array([*map(involves(watch.oscillator), run.pairs), False])
-    blows, late = blows_that_turn(run.events, touching, found.end), found.end[found.end >= start]
-    if not len(late) or 2 * np.isin(late, blows["t"]).sum() < len(late):
+    blows, met = blows_that_turn(run.events, touching, found.end)
+    late = met[found.end >= start]
+    if not late.any() or 2 * late.sum() + 1 < len(late):  # every other one, of an odd number
         return None
-    ended = np.flatnonzero(np.isin(found.end, blows["t"]))
-    hardest = blows[np.argmax(np.where(blows["t"] == found.end[ended[-1]], blows["impulse_normal"], -np.inf))]
+    ended = np.flatnonzero(met)
+    hardest = blows[np.argmax(np.where(blows["t"] >= found.end[ended[-1]] - AT_ONCE, blows["impulse_normal"], -np.inf))]
     first, last = found.end[ended[[0, -1]]].tolist()
     angle = float(found.end_at[ended[-1]]) - watch.rest
     return Knocks(first, int(hardest["contact"]), last, angle, len(ended), len(found) - int(ended[0]))

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from watchsim.analysis.watch import Teeth, teeth
-from watchsim.escapement.by_hand import SLACK, Hands, Parts, Rest, Stretch, Sweep, Wheel, parts_of
+from watchsim.escapement.by_hand import SLACK, Hands, LetOff, Parts, Rest, Stretch, Sweep, Wheel, parts_of
 from watchsim.escapement.fork_and_pin import Balance, Direct, Entry, Fork, NotMeasured, Passage, Safety, fork, safety
 from watchsim.escapement.impulses import Impulse, Pallet, Roller, impulse, least_arm, pallet
 from watchsim.escapement.turning import LEVEL
@@ -35,7 +35,9 @@ def passages(
         tooth = teeth.number(math.atan2(rest.y - oy, rest.x - ox) - rest.wheel)
         direct = _direct(roller, sweep, side)
         if direct is None:
-            passage, last = _passage(wheel, sweep, side, tooth), sweep.last
+            # Where the pallet met the tooth; the first swing's lies as far inside its end as for `_beyond_let_off`.
+            met = found[-1].landed.lever if found else sweep.stretches[0].first.lever - 0.25 * side * (banks[0] - banks[1])
+            passage, last = _passage(wheel, sweep, side, tooth, met), sweep.last
         else:
             passage, last = _direct_passage(wheel, sweep, direct, tooth, side, banks)
         found.append(passage)
@@ -74,7 +76,8 @@ def _direct_passage(
     return passage, last
 
 
-def _passage(wheel: Wheel, sweep: Sweep, side: float, tooth: int) -> Passage:
+def _passage(wheel: Wheel, sweep: Sweep, side: float, tooth: int, met: float) -> Passage:
+    """`met`: where the lever stood (rad) as the tooth dropped onto the stone."""
     locked = _locking(sweep.stretches)
     # The one by which the wheel drops to the lock; before it, it may have run after an impulse stone.
     let_offs = sweep.let_offs
@@ -92,13 +95,23 @@ def _passage(wheel: Wheel, sweep: Sweep, side: float, tooth: int) -> Passage:
     caught = sweep.let_offs[0].landed if len(sweep.let_offs) > 1 else None
     unlocked = sweep.let_offs[0].last if caught else locked[-1].last if locked else sweep.stretches[0].first
     last = next(i for i, stretch in enumerate(sweep.stretches) if stretch.last == let_off.last)
+    end = sweep.stretches[-1].last.lever
     if len(locked) > last:
-        raise NotMeasured(f"a tooth is let off without having driven {wheel.parts.lever}: there is no lift")
-    assert let_off.landed is not None
+        face = sweep.stretches[last]
+        if wheel.parts.detached or not _repels(face):
+            raise NotMeasured(f"a tooth is let off without having driven {wheel.parts.lever}: there is no lift")
+        # An anchor with one face for both: what was recoil on the way out is impulse, from where the tooth dropped onto it.
+        rest = face.first if side * (face.first.lever - met) <= 0.0 else wheel.lead(face.first, met).last
+        assert rest is not None
+        driven, room = (Stretch(rest, face.last),), wheel.room(rest)
+        return Passage(tooth, side, sweep.stretches[0].first, rest, let_off.last, landed, end, driven, room)
     driven = sweep.stretches[len(locked) : last + 1]
     room = sweep.room[len(locked)] if locked else sweep.room[0]
-    end = sweep.stretches[-1].last.lever
-    return Passage(tooth, side, sweep.stretches[0].first, unlocked, let_off.last, let_off.landed, end, driven, room, caught)
+    return Passage(tooth, side, sweep.stretches[0].first, unlocked, let_off.last, landed, end, driven, room, caught)
+
+
+def _repels(stretch: Stretch) -> bool:
+    return stretch.first.slope > LEVEL or stretch.last.slope > LEVEL
 
 
 def _locking(stretches: Sequence[Stretch]) -> Sequence[Stretch]:
@@ -106,7 +119,7 @@ def _locking(stretches: Sequence[Stretch]) -> Sequence[Stretch]:
     face = stretches[0].first
     count = 0
     for stretch in stretches:
-        repels = stretch.first.slope > LEVEL or stretch.last.slope > LEVEL
+        repels = _repels(stretch)
         if repels and not (stretch.first.stone == face.stone and stretch.first.tooth == face.tooth):
             break
         count += 1
@@ -233,20 +246,24 @@ def _banks(hands: Hands, parts: Parts, wheel: Wheel, start: Rest) -> tuple[float
 def _beyond_let_off(wheel: Wheel, start: Rest) -> tuple[float, float]:
     """Half as far again as from let-off to let-off: the tooth that rests on a pallet now, and then the next one."""
     sweeps = [wheel.lead(start, start.lever + sense * FARTHEST / 4.0) for sense in (1.0, -1.0)]
-    first = min(
-        (one.let_offs[0] for one in sweeps if one.let_offs), key=lambda one: abs(one.last.lever - start.lever), default=None
-    )
+    found = (let_off for sweep in sweeps for let_off in _drops(sweep)[:1])
+    first = min(found, key=lambda one: abs(one.last.lever - start.lever), default=None)
     if first is None:
         raise NotMeasured(f"turning {wheel.parts.lever} by {math.degrees(FARTHEST / 4.0):g}° either way lets off no tooth")
     sense = math.copysign(1.0, first.last.lever - start.lever)
     if first.landed is None:
         raise NotMeasured("a tooth that is let off finds no pallet to lock on: the wheel runs free")
-    back = wheel.lead(first.landed, first.landed.lever - sense * FARTHEST / 4.0).let_offs
+    back = _drops(wheel.lead(first.landed, first.landed.lever - sense * FARTHEST / 4.0))
     if not back:
         raise NotMeasured(f"a tooth that is let off locks, but turning {wheel.parts.lever} back does not let it off again")
     upper, lower = sorted((first.last.lever, back[0].last.lever), reverse=True)
     more = 0.5 * (upper - lower)
     return upper + more, lower - more
+
+
+def _drops(sweep: Sweep) -> list[LetOff]:
+    """Its let-offs, without those of a pallet driven so deep between the teeth that the one it drove back slips past it."""
+    return [one for one in sweep.let_offs if one.last.slope >= -LEVEL]
 
 
 def _entry_side(wheel: Wheel, beat: Passage) -> float:

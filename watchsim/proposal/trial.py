@@ -29,14 +29,19 @@ ON = 0.9  # of a pitch: a wheel that goes on by less in all that time stands
 STILL = 1e-6  # rad or m: what moves less in all that time does not move
 BY_TRIAL = "tried both ways, it works this way only"
 BY_FUNCTION = "only this way do its teeth lock and drive, as check --turn measures them"
+EITHER_WAY = (
+    "its teeth lock and drive either way, as check --turn measures them; it is driven the way that their tips lean: other "
+    "inertias or another torque may mend what the trial shows"
+)
 
 
 def tried(paths: Sequence[Path]) -> Proposal:
     """What drawings suggest, with what a run of it shows among the doubts.
 
     Where nothing says which way the wheel turns, or it does not work the way that its teeth lean, as those of a cylinder
-    escapement, whose tips trail, it turns the way in which its function can be measured, else the way in which it works: a
-    trial has guessed inertias and torques, a measurement has none. NothingToPropose as for `propose`.
+    escapement, whose tips trail, it turns the way in which its function can be measured, where both are the way of the lean,
+    else the way in which it works: a trial has guessed inertias and torques, a measurement has none. NothingToPropose as for
+    `propose`.
     """
     found = propose(paths)
     if not found.meets:
@@ -48,9 +53,11 @@ def tried(paths: Sequence[Path]) -> Proposal:
     other = propose(paths, -found.way)
     faults_there, works_there = _run(other)
     here, there = (_is_measured(found), works), (_is_measured(other), works_there)
+    by_function, leans = here[0] != there[0], not found.either_way
+    if here[0] and there[0] and leans:  # the drawing says more than a trial
+        return found.doubting([*faults, EITHER_WAY])
     if here == there:
         return found.doubting(faults)
-    by_function, leans = here[0] != there[0], not found.either_way
     if there > here or not leans:
         found = propose(paths, (other if there > here else found).way, BY_FUNCTION if by_function else BY_TRIAL)
         faults = faults_there if there > here else faults

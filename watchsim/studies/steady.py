@@ -282,8 +282,8 @@ def _cycle(loop: Loop, parts: Parts, exact: Polished) -> Cycle:
 def _blows(loop: Loop, parts: Parts, events: Events) -> str:
     """What ends the swings of a cycle, where that is a blow in half of them; "" where they end by themselves."""
     ends = turns(events, parts)["t"]
-    blows = blows_that_turn(events, parts.touching, ends)
-    count = int(np.isin(ends, blows["t"]).sum())
+    blows, met = blows_that_turn(events, parts.touching, ends)
+    count = int(met.sum())
     if not count or 2 * count < len(ends):
         return ""
     pair = pairs_of(loop.compiled)[int(blows["contact"][np.argmax(blows["impulse_normal"])])]
