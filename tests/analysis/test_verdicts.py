@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
+import re
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -103,6 +104,20 @@ def test_a_wheel_that_races_past_a_lever_that_went_over_is_said_to_race():
     assert found.name == "overbanks" and found.body == "lever"
     assert "wheel runs through" in found.message and "is not unlocked" not in found.message
     assert summary(run)["efficiency"] is None and "nothing locks wheel" in summary(run)["timing_message"]
+
+
+def test_a_wheel_that_runs_through_when_unlocked_is_said_to_be_locked_between():
+    """The spring of a detent is too weak to bring it back before several teeth are past."""
+    scene = load(profiles_dir() / "detent").set("springs.1.stiffness", "4e-06 N·m/rad")
+    assert scene.springs[1].body == "detent"
+    run = simulate(scene, 3.0, to_the_end=False)
+    found, numbers = verdict(run), summary(run)
+    whole = float(re.search(r"of the last (\S+) s", found.message)[1])
+    times = np.linspace(run.simulated - whole, run.simulated, 100_001)
+    turned = np.abs(np.diff(np.interp(times, run.t, run.q[:, run.slices["wheel"].start])))
+    share = 100.0 * (turned < 1e-6).mean()  # 15 µs each: at the speed of a tooth that is let go it is more than 1e-4
+    assert found.name == "trips" and "nothing locks" not in found.message + numbers["timing_message"]
+    assert float(re.search(r"for (\d+) % of", found.message)[1]) == pytest.approx(share, abs=2.0) and 10.0 < share < 90.0
 
 
 # Is a swing that ends with a blow distinguished from one that ends by itself?

@@ -17,7 +17,7 @@ from watchsim.analysis.flows import efficiency
 from watchsim.analysis.headlines import beats_csv, doubts, headlines, phases_csv
 from watchsim.analysis.timegrapher import timegrapher
 from watchsim.analysis.timing import Averages, averages, beats, last_window, whole_run
-from watchsim.analysis.verdict import RUNS_THROUGH, verdict
+from watchsim.analysis.verdict import NOTHING_LOCKS, RUNS_THROUGH, verdict
 from watchsim.analysis.verdict_kinds import NOTHING, Verdict
 from watchsim.mechanism.check import notes
 from watchsim.results.folder import versions
@@ -322,7 +322,10 @@ def _keeps_nothing_going(run: Trajectory, judged: str | None) -> str | None:
     parts, idle = roles(run.scene), never_touched(run)
     if idle is None and judged and RUNS_THROUGH in judged:
         kind = timekeeper(run.scene)
-        return f"no amplitude and rate of a {kind}: nothing locks {parts.wheel}, and {parts.oscillator} swings by itself"
+        why = f"nothing locks {parts.wheel}, and {parts.oscillator} swings by itself"
+        if NOTHING_LOCKS not in judged:
+            why = f"{parts.wheel} {RUNS_THROUGH} when it is unlocked"
+        return f"no amplitude and rate of a {kind}: {why}"
     return idle
 
 

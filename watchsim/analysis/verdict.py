@@ -103,7 +103,9 @@ def _rate(watch: Watch) -> str:
     return "" if means.rate_s_per_d is None else "; amplitude and rate are those of this moment, not of the watch"
 
 
-RUNS_THROUGH = "runs through"
+RUNS_THROUGH, NOTHING_LOCKS = "runs through", "and nothing locks it"
+BETWEEN = 0.1  # of the time, at least: a wheel that stands so long is locked between
+STANDS = 0.1  # of a pitch in a period: a wheel that goes on more slowly, or recoils, is locked
 
 
 def running_free(watch: Watch) -> tuple[float, str] | None:
@@ -122,7 +124,12 @@ def running_free(watch: Watch) -> tuple[float, str] | None:
     if behind.min() < least:
         start, least = float(rows[np.argmin(behind)]), float(behind.min())
     turns = (last - least - FAST * watch.pitch / watch.found.nominal_period * start) / (2.0 * np.pi)
-    return start, f"{watch.wheel} {RUNS_THROUGH}, {rounded(turns)} turns from {when(start)} to {when(end)}"
+    stood, waits = np.diff(watch.progress(rows)), np.diff(rows)
+    locked = float(waits[stood <= STANDS * watch.pitch / watch.found.nominal_period * waits].sum())
+    how, whole = NOTHING_LOCKS, float(waits.sum())
+    if locked > BETWEEN * whole:
+        how = f"but between it is locked, for {100.0 * locked / whole:.0f} % of the last {rounded(whole)} s"
+    return start, f"{watch.wheel} {RUNS_THROUGH}, {rounded(turns)} turns from {when(start)} to {when(end)}, {how}"
 
 
 def backwards(watch: Watch) -> Verdict | None:
@@ -186,7 +193,7 @@ def overbanking(watch: Watch) -> Verdict | None:
     drive = watch.drive(over)
     wheel = f"{watch.wheel}, under {torque_text(drive)}, is not unlocked"
     if free is not None:
-        wheel = f"{free[1]}, and nothing locks it, under {torque_text(drive)}"
+        wheel = f"{free[1]}, under {torque_text(drive)}"
     angle = degrees(float(watch.angle(watch.oscillator, np.array([t]))[0]) - watch.rest)
     words = (
         f"{when(over)}  the watch overbanks: {watch.lever} went over while {watch.oscillator} was away, which now strikes "
@@ -318,7 +325,7 @@ def _running_free(watch: Watch) -> Verdict | None:
         return None
     t, how = free
     drive = watch.drive(t)
-    words = f"{when(t)}  the watch trips: {how}, and nothing locks it, under {torque_text(drive)}"
+    words = f"{when(t)}  the watch trips: {how}, under {torque_text(drive)}"
     return Verdict(TRIPS, words, t, watch.wheel, None, drive)
 
 
