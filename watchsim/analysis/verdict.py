@@ -243,7 +243,7 @@ def knocking(watch: Watch) -> Verdict | None:
     return Verdict(KNOCKS, words, blows.first, watch.oscillator, str(pair), drive, blows.count)
 
 
-AT_ONCE = 1e-9  # s: a blow that leaves a rest of the velocity, if only by rounding, is followed by the turn, not met by it
+AT_ONCE = 1e-9  # s: rounding puts a blow that turns the oscillator back a little before the turning point, or after it
 
 
 def blows_that_turn(events: Events, touching: Bits, turned: Array) -> tuple[Events, Bits]:
@@ -253,12 +253,9 @@ def blows_that_turn(events: Events, touching: Bits, turned: Array) -> tuple[Even
     What turns back by itself is at rest then, and strikes nothing.
     """
     blows: Events = events[np.isin(events["kind"], LOSSES) & touching[events["contact"]]]
-    if not len(turned):
-        return blows[:0], np.zeros(0, bool)
-    next_turn = np.minimum(np.searchsorted(turned, blows["t"]), len(turned) - 1)
-    wait = turned[next_turn] - blows["t"]
-    at_once = (wait >= 0.0) & (wait <= AT_ONCE)
-    return blows[at_once], np.isin(np.arange(len(turned)), next_turn[at_once])
+    near = np.searchsorted(turned, blows["t"] - AT_ONCE), np.searchsorted(turned, blows["t"] + AT_ONCE, side="right")
+    at_once = near[0] < near[1]
+    return blows[at_once], np.isin(np.arange(len(turned)), near[0][at_once])
 
 
 def _stopped_short(watch: Watch, start: float) -> Knocks | None:
