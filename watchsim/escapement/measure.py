@@ -103,8 +103,8 @@ def _passage(wheel: Wheel, sweep: Sweep, side: float, tooth: int, met: float) ->
         # An anchor with one face for both: what was recoil on the way out is impulse, from where the tooth dropped onto it.
         rest = face.first if side * (face.first.lever - met) <= 0.0 else wheel.lead(face.first, met).last
         assert rest is not None
-        driven, room = (Stretch(rest, face.last),), wheel.room(rest)
-        return Passage(tooth, side, sweep.stretches[0].first, rest, let_off.last, landed, end, driven, room)
+        first, lift = sweep.stretches[0].first, (Stretch(rest, face.last),)
+        return Passage(tooth, side, first, rest, let_off.last, landed, end, lift, wheel.room(rest))
     driven = sweep.stretches[len(locked) : last + 1]
     room = sweep.room[len(locked)] if locked else sweep.room[0]
     return Passage(tooth, side, sweep.stretches[0].first, unlocked, let_off.last, landed, end, driven, room, caught)
