@@ -231,3 +231,10 @@ def test_the_command(tmp_path, capsys):
     assert "torques.0.value" in capsys.readouterr().out
     assert (folder / "sweep.png").stat().st_size > 5_000
     assert "amplitude_deg_per_percent" in (folder / "sweep.csv").read_text(encoding="utf-8")
+
+
+def test_a_dimension_and_a_quantity_of_the_same_words_are_kept_apart():
+    scene = ws.designs.swiss_lever().scene()
+    found = ws.sensitivity(scene, ["design.balance_inertia", "bodies.balance.inertia"])
+    labels = [label.get_text() for label in ws.plot_sensitivity(found).axes[0].get_yticklabels()]
+    assert sorted(labels) == ["balance inertia, +1 %", "design balance inertia, +1 %"]

@@ -11,6 +11,7 @@ import socket
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -24,6 +25,7 @@ from watchsim.render.study_plot import plot_sweep
 from watchsim.scene.keys import in_words
 from watchsim.studies.axes import Axis, axes_from_texts, axes_from_values, slug
 from watchsim.studies.point import Question, function_of, outputs_named
+from watchsim.studies.study_report import sweep_text
 from watchsim.studies.sweep import Sweep, swept
 from watchsim.studies.workers import NAME, Here
 
@@ -449,3 +451,12 @@ def test_the_least_draw_is_not_called_as_that_on_the_bank():
     assert drawn.dimensions["draw"] == "13°"
     assert function_of(drawn.scene(), 1)[output.column] == pytest.approx(11.0, abs=0.01)
     assert output.label == "least draw from bank to corner"
+
+
+def test_a_reason_names_its_points(table):
+    """The first of them in full, and how many share it."""
+    rows = [row | {"message": "" if number % 2 else "no cycle"} for number, row in enumerate(table.rows)]
+    said = sweep_text(replace(table, rows=tuple(rows))).splitlines()[-1]
+    first = [word for axis in table.axes for word in (axis.key, axis.usual)]
+    assert all(word in said for word in first)
+    assert said.endswith(f" and {len(rows[::2]) - 1} more: no cycle")

@@ -226,7 +226,13 @@ def plot_sensitivity(found: Sensitivity, width: float = style.FULL, ax: Axes | N
     made = style.figure(width, rows * (BAR * max(len(shown), 2) + AROUND_BARS), layout="constrained", ax=ax)
     panels = made.subplots(rows, across, sharey=True, squeeze=False).flat
     made.suptitle(f"{style.cut(found.title)}: what matters", x=0.01, ha="left", fontsize=style.TITLE, weight="bold", color=INK)
-    names = [f"{in_words(effect.quantity.key)}, +{effect.quantity.change_words}" for effect in shown]
+    said = [in_words(effect.quantity.key) for effect in shown]
+    # A dimension of the design and a quantity of a body may have the same words.
+    said = [
+        f"design {words}" if said.count(words) > 1 and effect.quantity.key.startswith("design.") else words
+        for words, effect in zip(said, shown, strict=True)
+    ]
+    names = [f"{words}, +{effect.quantity.change_words}" for words, effect in zip(said, shown, strict=True)]
     # A panel's width is known only when it is laid out; before, all are alike beside the names.
     wide = (width - LETTERS * max(map(len, names), default=0)) / across
     for axes, output in zip(panels, found.outputs, strict=True):

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from watchsim.results.tables import cell
 from watchsim.studies.axes import Axis, slug
-from watchsim.studies.point import OUTPUTS, Output
+from watchsim.studies.point import OUTPUTS, Output, Row
 from watchsim.units import rounded, signed, to
 
 if TYPE_CHECKING:  # each study loads what it needs, and a quarter of a second of scipy is for tolerances alone
@@ -84,8 +84,17 @@ def sweep_text(sweep: Sweep) -> str:
     head = [_head(axis) for axis in sweep.axes] + [_title(one) for one in sweep.outputs] + ["verdict"]
     body = [_line(sweep, row) for row in sweep.rows]
     lines = [sweep.title, *aligned(head, body)]
-    reasons = dict.fromkeys(row["message"] for row in sweep.rows if row["message"])
-    return "\n".join([*lines, *(f"  {reason}" for reason in list(reasons)[:ENDS])])
+    reasons: dict[str, list[Row]] = {}
+    for row in sweep.rows:
+        if row["message"]:
+            reasons.setdefault(row["message"], []).append(row)
+    return "\n".join([*lines, *(f"  {_points(sweep, rows)}: {reason}" for reason, rows in list(reasons.items())[:ENDS])])
+
+
+def _points(sweep: Sweep, rows: list[Row]) -> str:
+    """The first of these points, and how many more there are."""
+    first = ", ".join(f"{axis.key} {_key(axis, rows[0][axis.key])} {axis.usual}".rstrip() for axis in sweep.axes)
+    return f"{first} and {len(rows) - 1} more" if len(rows) > 1 else first
 
 
 def sensitivity_text(found: Sensitivity) -> str:
