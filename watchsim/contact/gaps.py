@@ -261,8 +261,8 @@ def _inside_fan(p, along, across, reach):
 
 @kernel
 def gap_of_arc(p):
-    """Angle between the two ends of a primitive's arc that is not part of it, rad; infinite where it has none or no ends."""
-    if p.extent == FULL or p.kind == LINE or p.radius == 0.0:
+    """Angle between the ends of an arc of more than half a turn, which is not part of it, rad; infinite of other primitives."""
+    if p.half_cos >= 0.0 or p.extent == FULL or p.kind == LINE or p.radius == 0.0:
         return math.inf
     return 2.0 * (math.pi - math.atan2(p.half_sin, p.half_cos))
 

@@ -279,7 +279,7 @@ def _looks_for_gaps(model, regime, smooth):
         contact = model.contacts[regime.active[j]]
         a, b = model.primitives[contact.a], model.primitives[contact.b]
         gap = min(gap_of_arc(a), gap_of_arc(b))
-        if gap >= math.pi:
+        if gap == math.inf:
             continue
         turning = 0.0
         for at in range(3):  # at the step's start, middle and end
@@ -296,8 +296,8 @@ def _looks_for_gaps(model, regime, smooth):
 
 @kernel
 def _reach(primitive):
-    """Radius of an arc whose gap could be passed, m; infinite for other primitives."""
-    return primitive.radius if gap_of_arc(primitive) < math.pi else math.inf
+    """Radius of an arc whose gap could be passed, m; infinite of other primitives."""
+    return primitive.radius if gap_of_arc(primitive) < math.inf else math.inf
 
 
 @kernel
