@@ -7,11 +7,13 @@ import sys
 import pytest
 from made_scenes import drawing, square
 
+import watchsim as ws
+from watchsim.cli import main
 from watchsim.drawing.findings import Finding
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Line
 from watchsim.scene.errors import SceneError
-from watchsim.scene.load import from_mapping, load
+from watchsim.scene.load import from_mapping, load, read_mapping
 
 POLYGON = 'polygon = [["-1 mm", "0 mm"], ["1 mm", "0 mm"], ["0 mm", "3 mm"]]'
 SOLID = '[[bodies.wheel.solids]]\nlayer = "TEETH"\nthickness = "0.12 mm"\ndensity = "7.85 g/cm³"\n'
@@ -191,6 +193,19 @@ def test_all_faults_at_once_in_the_order_of_the_file(desk, good):
     assert len(faults) >= 9
     lines = [int(fault.place.rpartition(":")[2]) for fault in faults]
     assert lines == sorted(lines)
+
+
+def test_a_wrong_pivot_hides_no_wrong_layer_of_a_contact(tmp_path):
+    for name, content in ws.designs.graham().files().items():
+        (tmp_path / name).write_bytes(content)
+    mapping = read_mapping(tmp_path / "scene.toml")
+    body, layer = mapping["contacts"][0]["between"][0].split(".")
+    mapping["bodies"][body]["pivot"] = "NOWHERE"
+    mapping["contacts"][0]["between"][0] = f"{body}.DENTS"
+    with pytest.raises(SceneError) as caught:
+        from_mapping(mapping, tmp_path / "scene.toml")
+    assert [fault.key for fault in caught.value.faults] == [f"bodies.{body}.pivot", "contacts.0.between.0"]
+    assert layer in caught.value.faults[1].message
 
 
 def test_unknown_key_hides_nothing_else(desk, good):
@@ -513,3 +528,15 @@ def test_many_slips_take_work_in_proportion(made):
     (few, _), (many, error) = calls_of_refusing(made(400)), calls_of_refusing(made(1600))
     assert many < 5 * few
     assert ("1499 more after it" in str(error)) or (len(error.faults) == 1600 and "and 1100 more faults" in str(error))
+
+
+def test_what_is_found_several_times_is_said_once(tmp_path, capsys):
+    """Three pieces of no length in one path."""
+    path = '<path id="plate" d="M0,0 L10,0 L10,0 L10,10 L10,10 L0,10 L0,10 Z"/>'
+    head = '<svg xmlns="http://www.w3.org/2000/svg" width="20mm" height="20mm" viewBox="0 0 20 20">'
+    (tmp_path / "plate.svg").write_text(f"{head}{path}</svg>", encoding="utf-8")
+    body = '[bodies.plate]\ndrawing = "plate.svg"\npivot = ["5 mm", "5 mm"]\ninertia = "1 g·mm²"\n'
+    (tmp_path / "scene.toml").write_text(body, encoding="utf-8")
+    main(["check", str(tmp_path / "scene.toml")])
+    (line,) = [line for line in capsys.readouterr().out.splitlines() if "no length" in line]
+    assert line.endswith("(3 times)")

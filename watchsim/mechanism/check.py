@@ -6,6 +6,7 @@ Echoes units, sizes, centre distances, mass, inertia and frequency, so that a wr
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -238,7 +239,8 @@ def check_text(report: Mapping[str, Any], scene: Scene, function: Iterable[str] 
     if scene.contacts and all(finding["code"] != "overlap" for finding in report["findings"]):
         parts.append("  nothing overlaps at the start, among all pairs that may touch")
     parts += [*pair_lines(report["pairs"]), *function, *_tolerance_lines(scene)]
-    parts += [f"{finding['severity']}: {finding['message']}. {finding['fix']}".rstrip() for finding in report["findings"]]
+    said = Counter(f"{finding['severity']}: {finding['message']}. {finding['fix']}".rstrip() for finding in report["findings"])
+    parts += [f"{words} ({number} times)" if number > 1 else words for words, number in said.items()]
     return "\n".join(parts)
 
 

@@ -294,7 +294,9 @@ def _from_drawing(table: Table, folder: Path, made: Made) -> Outlines:
     if drawing is None:
         return Outlines(pivot=UNREADABLE if marked else given_pivot(table), sound=False)
     drawing = adjusted(table, with_teeth(table, drawing))
+    before = len(table.faults.found)
     pivot = marked_pivot(table, drawing) if marked else given_pivot(table)
+    known += len(table.faults.found) - before  # a wrong pivot leaves outlines sound: what names their layers is judged, too
     apart, drilled = frozenset(set_apart(table.mapping)), frozenset(hollow(table.mapping))
     sides = {layer: side for layer, side in face_layers(table, drawing, table.texts("layers")).items() if layer not in apart}
     layers = _layers(table, drawing, sides, apart | drilled)
