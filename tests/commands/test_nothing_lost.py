@@ -302,8 +302,7 @@ def test_a_study_goes_on_only_in_the_folder_of_a_study(
     folder = tmp_path / "out"
     folder.mkdir()
     (folder / "scene.toml").write_text("mine")
-    scene = profiles_dir().parent / "docs" / "guide" / "tolerances" / "swiss_lever.toml"
-    assert main([study[0], str(scene), *study[1:], "-o", str(folder), "--resume"]) == 2
+    assert main([study[0], LEVER, *study[1:], "-o", str(folder), "--resume"]) == 2
     assert "this folder holds no study" in capsys.readouterr().err
     assert [(path.name, path.read_text()) for path in folder.iterdir()] == [("scene.toml", "mine")]
     (folder / "scene.toml").rename(folder / ".hidden")  # what a system leaves in every folder is nobody's result
