@@ -127,7 +127,7 @@ def main() -> None:
     parser.add_argument("--only", type=int, help="print this file and what becomes of it")
     parser.add_argument("-o", "--output", type=Path, default=Path("results/fuzz"), help="where files that fail are kept")
     args = parser.parse_args()
-    from watchsim.analysis.expectations import expectation_faults
+    from watchsim.analysis.expectation_faults import expectation_faults
     from watchsim.commands.inputs import load_scene
     from watchsim.simulation.simulate import simulate
 

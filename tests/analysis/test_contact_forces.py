@@ -15,7 +15,7 @@ from scipy.optimize import brentq
 
 import watchsim as ws
 from watchsim.analysis.balanced_forces import Mechanism
-from watchsim.analysis.expectations import not_begun
+from watchsim.analysis.expectation_faults import not_begun
 from watchsim.analysis.forces import forces
 from watchsim.analysis.watch import arms
 from watchsim.geometry.loops import Loop

@@ -9,8 +9,9 @@ from pathlib import Path
 import pytest
 from analysis.made_beats import lever_scene
 
-from watchsim.analysis.expectations import USUAL, expectation_faults, impossible, not_begun
-from watchsim.analysis.summary import KNOWN, judged, mistakes, not_judged, summary, unit_of
+from watchsim.analysis.expectation_faults import USUAL, expectation_faults, impossible, not_begun
+from watchsim.analysis.expectations import KNOWN, judged, mistakes, not_judged, unit_of
+from watchsim.analysis.summary import summary
 from watchsim.cli import main
 from watchsim.commands.console import BAD_INPUT
 from watchsim.paths import profiles_dir

@@ -19,8 +19,8 @@ from watchsim.paths import profiles_dir
 from watchsim.results.tables import cell
 from watchsim.storage.destination import secure_file
 from watchsim.storage.write import write_file
+from watchsim.studies.journal import Journal
 from watchsim.studies.study_report import csv_text
-from watchsim.studies.workers import Journal
 
 LEVER = profiles_dir() / "bench_lever"
 

@@ -294,7 +294,10 @@ def test_a_part_does_not_replace_the_whole(
         assert f"goes to {tmp_path / name}" in said.err and f"Results: {tmp_path / name}" in said.out
 
 
-@pytest.mark.parametrize("study", [["tolerance"], ["sweep", "contacts.0.friction=0.1,0.12"]])
+LOOSE = ["--set", 'tolerances."contacts.0.friction".limits=±0.03']
+
+
+@pytest.mark.parametrize("study", [["tolerance", *LOOSE], ["sweep", "contacts.0.friction=0.1,0.12"]])
 def test_a_study_goes_on_only_in_the_folder_of_a_study(
     study: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

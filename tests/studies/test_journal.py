@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from storage.disk_faults import Disk, watched
 
-from watchsim.studies.workers import NAME, Journal
+from watchsim.studies.journal import NAME, Journal
 
 STUDY = {"scene": "0123456789abcdef", "keys": {"a": [1.0, 2.0, 3.0]}}
 ROWS = {number: {"amplitude_deg": 270.0 + number} for number in range(3)}

@@ -24,10 +24,11 @@ from watchsim.cli import main
 from watchsim.render.study_plot import plot_sweep
 from watchsim.scene.keys import in_words
 from watchsim.studies.axes import Axis, axes_from_texts, axes_from_values, slug
+from watchsim.studies.journal import NAME
 from watchsim.studies.point import Question, function_of, outputs_named
 from watchsim.studies.study_report import sweep_text
 from watchsim.studies.sweep import Sweep, swept
-from watchsim.studies.workers import NAME, Here
+from watchsim.studies.workers import Here
 
 ROOT = Path(ws.__file__).resolve().parents[1]
 BENCH = ws.profiles_dir() / "bench_lever"

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from scipy.stats import norm, triang, truncnorm
 
-from watchsim.scene.read_tolerances import deviations, fit
+from watchsim.scene.read_tolerances import SEQUENCES, deviations, fit
 from watchsim.scene.scene import Correlation, Tolerance
 from watchsim.studies.chaos import Basis, indices
-from watchsim.studies.sampling import SEQUENCES, Shifted, Space, deviation
+from watchsim.studies.sampling import Shifted, Space, deviation
 from watchsim.studies.yields import controlled, predicted_yield, sequence_of, share_of, towards_failures, weighted
 from watchsim.units import ANGLE, LENGTH, UnitError
 

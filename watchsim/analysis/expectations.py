@@ -1,92 +1,137 @@
-"""Does every expectation of a scene name a number that its runs give, in a unit of its kind?
+"""What does a run say to the expectations of its scene?
 
-Worth asking before a long run: the names are those of the summary of a run that has not begun.
+Keys are watch quantities (amplitude, rate, period, beat_error, frequency) or dotted names of the summary, such as
+"bodies.disc.x_m" or "energy.residual_relative". Units come from the ends of these names.
 """
 
 from __future__ import annotations
 
-import dataclasses
+import difflib
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
 
-import numpy as np
+from watchsim.scene.keys import ALIKE
+from watchsim.scene.read_settings import FUNCTION
+from watchsim.scene.scene import Expectation
+from watchsim.units import known_unit
 
-from watchsim.analysis.summary import WATCH_KEYS, mistakes, summary
-from watchsim.mechanism.compile import compile_scene
-from watchsim.scene.errors import Fault, Faults
-from watchsim.scene.roles import keeps_time, partners, roles
-from watchsim.scene.scene import Expectation, Scene
-from watchsim.scene.toml import key_lines
-from watchsim.simulation.state import COUNT_NAMES, EVENT_DTYPE, Stop
-from watchsim.simulation.trajectory import Trajectory
-
-COUNTS = (*COUNT_NAMES, "cells", "cells_asked", "declared_pairs", "sweeps")
-LOOKED = ("worst_m", "resolution_m", "allowed_m", "looks", "t_s", "x_mm", "y_mm")
-TIMED = (
-    "amplitude_deg",
-    "amplitude_deg_error",
-    "period_s",
-    "rate_s_per_d",
-    "beat_error_ms",
-    "frequency_hz",
-    "vph",
-    "timegrapher",
-)
-BY_WHEEL = ("missed_beats", "efficiency")
-USUAL = {  # what is promised most often, and in every summary
-    **dict.fromkeys(("amplitude_deg", "rate_s_per_d", "period_s", "beat_error_ms", "frequency_hz"), 0.0),
-    **{"missed_beats": 0.0, "worst_penetration_m": 0.0, "energy": {"residual_relative": 0.0}},
+WATCH_KEYS = {
+    "amplitude": "amplitude_deg",
+    "rate": "rate_s_per_d",
+    "period": "period_s",
+    "beat_error": "beat_error_ms",
+    "frequency": "frequency_hz",
+    **{name: f"function.{name}_deg" for name in FUNCTION},
 }
-CAUSES = ("friction", "damping", "impacts", "stepping")
+# Longest first: "_s_per_d" must not pass for "_d".
+ENDINGS = {
+    **{"_rad_per_s": "rad/s", "_m_per_s": "m/s", "_s_per_d": "s/d"},
+    **{"_deg": "°", "_rad": "rad", "_vph": "vph", "_hz": "Hz", "_ms": "ms", "_s": "s", "_m": "m", "_J": "J"},
+}
+ERROR = "_error"
+KNOWN = f"Known names: {', '.join(WATCH_KEYS)} and the names in summary.json."
+MOST_ADVISED = 20  # wrong keys for which a similar one is looked for: each takes a hundredth of a second
 
 
-def expectation_faults(scene: Scene) -> list[Fault]:
-    """A fault for each expectation that no run of the scene can answer."""
-    if not scene.expect:
-        return []
-    wrong = mistakes(scene.expect, USUAL)
-    if any(wrong):
-        # All names that a summary of this scene has: takes a tenth of a second, mostly to load what works out the numbers.
-        wrong = mistakes(
-            scene.expect, summary(dataclasses.replace(not_begun(scene), scene=dataclasses.replace(scene, expect=())))
-        )
-    lines = key_lines(scene.path.read_text(encoding="utf-8-sig")) if scene.path and scene.path.is_file() else {}
-    faults = Faults(str(scene.path or "scene"), lines)
-    for expectation, mistake in zip(scene.expect, wrong, strict=True):
-        if message := mistake or impossible(expectation, scene):
-            faults.add(f"expect.{expectation.key}", message)
-    return faults.found
+def judged(expectations: Sequence[Expectation], numbers: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """{key, expected, tolerance, got, ok, unit, message} of each, in the unit of the promise; `message`: why `got` is None."""
+    known = dict(_numbers(numbers))
+    return [_judged(expectation, known) for expectation in expectations]
 
 
-def impossible(expectation: Expectation, scene: Scene) -> str:
-    """Why no run of this scene gives the number, whatever happens in it; "" where one can."""
-    name = WATCH_KEYS.get(expectation.key, expectation.key)
-    whole = name.split(".")[0]
-    if whole not in (*TIMED, *BY_WHEEL):
-        return ""
-    parts = roles(scene)
-    if parts.oscillator is None:
-        why = "nothing in it swings on a spring or by gravity"
-    elif "amplitude_deg" in name and scene.body(parts.oscillator).motion == "slide":
-        why = f"{parts.oscillator} slides, so it has no amplitude in degrees"
-    elif whole in BY_WHEEL and (parts.wheel is None or not keeps_time(scene)):
-        why = "no driven wheel keeps the oscillator going"
-    elif name == "timegrapher.amplitude_deg" and scene.lift_angle is None:
-        why = "it names no lift_angle under [timegrapher]"
-    elif whole == "timegrapher" and not partners(scene, parts.oscillator):
-        why = f"nothing may touch {parts.oscillator}, so no beat is heard"
+def _judged(expectation: Expectation, known: Mapping[str, float | None]) -> dict[str, Any]:
+    got, message = _found(expectation, known)
+    low, high = expectation.bounds
+    if got is not None and expectation.low is expectation.high:
+        ok: bool | None = abs(got - expectation.value) <= expectation.tolerance
     else:
-        return ""
-    return f'no run of this scene gives "{expectation.key}": {why}. Leave it out'
+        ok = got is not None and low <= got <= high
+    return {
+        "key": expectation.key,
+        "expected": expectation.value,
+        "tolerance": expectation.tolerance,
+        **({} if expectation.low is expectation.high else {"min": expectation.low, "max": expectation.high}),
+        "got": got,
+        "ok": None if expectation.key in FUNCTION else ok,
+        "unit": expectation.unit,
+        "message": message,
+    }
 
 
-def not_begun(scene: Scene) -> Trajectory:
-    """A run of the scene with nothing in it but where its bodies stand."""
-    compiled = compile_scene(scene)
-    q = compiled.relative(compiled.q[None])
-    rest = np.zeros_like(q)
-    no_events = np.zeros(0, EVENT_DTYPE)
-    return Trajectory(
-        *(scene, np.zeros(1), q, rest, rest, compiled.slices, no_events, (), Stop.DURATION),
-        energy={"dissipated": dict.fromkeys(CAUSES, 0.0)},
-        counts=dict.fromkeys(COUNTS, 0),
-        overlap={**dict.fromkeys(LOOKED, 0.0), "between": None},
-    )
+def not_judged(entry: Mapping[str, Any], changed: Sequence[str]) -> dict[str, Any]:
+    """An entry of `judged` without a verdict (`ok` is null): options made the run another than the scene's own."""
+    return {**entry, "ok": None, "message": f"not checked: changed by {' and '.join(changed)}"}
+
+
+def unit_of(name: str) -> str:
+    """The unit a dotted name of the summary ends with; "" for plain numbers."""
+    if name.startswith("energy.dissipated."):
+        return "J"
+    last = name.removesuffix(ERROR)
+    return next((unit for ending, unit in ENDINGS.items() if last.endswith(ending)), "")
+
+
+def mistakes(expectations: Sequence[Expectation], numbers: Mapping[str, Any]) -> list[str]:
+    """Of each what is wrong with the key or the unit, whatever the run; "" for nothing. What is null may hold numbers later."""
+    known = dict(_numbers(numbers))
+    found: list[str] = []
+    wrong = 0
+    for expectation in expectations:
+        found.append(_mistake(expectation, known, advised=wrong < MOST_ADVISED))
+        wrong += bool(found[-1])
+    return found
+
+
+def _mistake(expectation: Expectation, known: Mapping[str, float | None], advised: bool = True) -> str:
+    name = _name(expectation)
+    if name not in known and expectation.key not in FUNCTION and not _within_null(name, known):
+        return f'"{expectation.key}" is not a number in the results. {_advice(expectation.key, known) if advised else KNOWN}'
+    source = unit_of(name)
+    if expectation.unit and known_unit(source).powers != known_unit(expectation.unit).powers:
+        return f'"{expectation.key}" is in {source or "plain numbers"}, which cannot be compared with {expectation.unit}'
+    return ""
+
+
+def _within_null(name: str, known: Mapping[str, float | None]) -> bool:
+    """Whether something above the dotted name is null, and may hold numbers in another run."""
+    parts = name.split(".")
+    return any(known.get(".".join(parts[:k]), 0.0) is None for k in range(1, len(parts)))
+
+
+def _name(expectation: Expectation) -> str:
+    return WATCH_KEYS.get(expectation.key, expectation.key)
+
+
+def _found(expectation: Expectation, known: Mapping[str, float | None]) -> tuple[float | None, str]:
+    """The number in the expectation's unit, or None and what is wrong."""
+    if message := _mistake(expectation, known):
+        return None, message
+    value = known.get(_name(expectation))
+    if expectation.key in FUNCTION:
+        return None, "not checked: watchsim tolerance measures the geometry of function"
+    if value is None:
+        return None, f'this run gives no "{expectation.key}"'
+    if not expectation.unit:
+        return value, ""
+    return value * known_unit(unit_of(_name(expectation))).factor / known_unit(expectation.unit).factor, ""
+
+
+def _numbers(mapping: Mapping[str, Any], above: str = "") -> list[tuple[str, float | None]]:
+    """(dotted name, value) of all numbers and of what is null."""
+    found: list[tuple[str, float | None]] = []
+    for key, value in mapping.items():
+        name = f"{above}{key}"
+        if isinstance(value, Mapping):
+            found += _numbers(value, f"{name}.")
+        elif value is None:
+            found.append((name, None))
+        elif isinstance(value, (int, float)):
+            found.append((name, float(value) if math.isfinite(value) else None))
+    return found
+
+
+def _advice(key: str, known: Mapping[str, Any]) -> str:
+    names = [*WATCH_KEYS, *known]
+    near = difflib.get_close_matches(key, names, n=1, cutoff=ALIKE)
+    return f'Did you mean "{near[0]}"?' if near else KNOWN

@@ -29,7 +29,7 @@ def load_scene(name: str, changes: list[str] | None = None, overlap: bool = True
     """The scene of a file or folder with the KEY=VALUE of --set in it; SceneError lists all that is wrong, expectations that no
     run can answer and overlaps included.
     """
-    from watchsim.analysis.expectations import expectation_faults
+    from watchsim.analysis.expectation_faults import expectation_faults
     from watchsim.mechanism.overlap import overlap_faults
     from watchsim.scene.errors import SceneError
     from watchsim.scene.load import assignments, load_set

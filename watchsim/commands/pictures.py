@@ -140,7 +140,7 @@ def _drawn(draw: Callable[[Path], object]) -> Callable[[Path], None]:
 
 def empty_panels(scene: Scene) -> Kinematics:
     """The panels of the plots that come with a run, drawn once, which is half the work: made while the run goes on."""
-    from watchsim.analysis.expectations import not_begun
+    from watchsim.analysis.expectation_faults import not_begun
 
     _load()
     from watchsim.render.kinematics_plot import Kinematics

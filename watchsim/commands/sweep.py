@@ -192,7 +192,7 @@ def watched(compute: Callable[[Progress], Any]) -> Any:
 def study_folder(args: argparse.Namespace, scene: Scene, what: str, held: contextlib.ExitStack) -> Path:
     """The results folder, made if it is not there; refused where it holds something else."""
     from watchsim.commands.inputs import claimed, secured_folder
-    from watchsim.studies.workers import NAME
+    from watchsim.studies.journal import NAME
 
     name = scene.path.parent.name if scene.path else "scene"
     folder = Path(args.output or Path("results") / f"{name}-{what}")

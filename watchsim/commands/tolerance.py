@@ -41,7 +41,8 @@ def options(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from watchsim.commands.inputs import load_scene
     from watchsim.scene.errors import SceneError
-    from watchsim.studies.yields import checked_samples, half_width
+    from watchsim.scene.read_tolerances import checked_samples, half_width, require_tolerances
+    from watchsim.studies.journal import same_study, study_of_tolerances
     from watchsim.units import TIME
 
     faults = []
@@ -56,19 +57,22 @@ def run(args: argparse.Namespace) -> int:
         faults.append(f"--seed {args.seed}: a whole number from 0 on is needed")
     try:
         scene = load_scene(args.scene, args.set)
+        require_tolerances(scene)
     except SceneError as error:
         raise InputError("\n".join([*faults, str(error)])) from error
     if faults:
         raise InputError("\n".join(faults))
-    from watchsim.studies.tolerance import made  # late: what computes takes as long to import as a fault to find
-    from watchsim.studies.tolerance_plan import plan_of
-
     check_tolerance(args.tol)
     duration = None if args.duration is None else parse_positive("--duration", args.duration, TIME)
     shard = _shard(args.shard)
     what = "tolerance" if shard is None else f"tolerance-{shard[0]}-of-{shard[1]}"
     with contextlib.ExitStack() as held:
         folder = study_folder(args, scene, what, held)
+        if args.resume:
+            same_study(folder, study_of_tolerances(scene, duration, args.tol, args.seed, args.importance))
+        from watchsim.studies.tolerance import made  # late: what computes takes as long to import as a fault to find
+        from watchsim.studies.tolerance_plan import plan_of
+
         with stopping.keeping():
             resumed = folder if args.resume else None
             plan = plan_of(

@@ -117,7 +117,8 @@ def _timeline(run: Trajectory) -> list[str]:
 
 
 def _numbers(run: Trajectory, extras: Extras, changed: Sequence[str], folder: Path) -> dict[str, Any]:
-    from watchsim.analysis.summary import not_judged, summary
+    from watchsim.analysis.expectations import not_judged
+    from watchsim.analysis.summary import summary
     from watchsim.results.tables import plain
 
     numbers: dict[str, Any] = plain(
@@ -186,7 +187,7 @@ def write_study(folder: Path, numbers: dict[str, Any], table: dict[str, list[Any
     except OSError as error:
         place = write_elsewhere(folder.name, lambda made: [write(made / file) for file, write in files.items()], "the table")
         raise InputError(f"{error}.\nThe table was saved, without plots, in {place}") from error
-    from watchsim.studies.workers import FIGURES, FILES
+    from watchsim.studies.journal import FIGURES, FILES
 
     drawn = [] if figure is None or stopping.requested() else [f"{name}{ending}" for ending in FIGURES]
     if drawn:

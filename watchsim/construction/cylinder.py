@@ -7,12 +7,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
-from scipy.optimize import brentq
-
 from watchsim.construction import scene_builder as toml
 from watchsim.construction.design import CHOSEN, ESTIMATE, Conflict, Design, Impossible, dim, sheets_of
 from watchsim.construction.outline import angle_of, arc_between, arc_of_radius, circle, fillet_chain, polar
 from watchsim.construction.parts import Arms, BalanceWheel, balance_wheel
+from watchsim.construction.root import zero_between
 from watchsim.drawing.write import Sheet
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Edge, Line, Point
@@ -99,7 +98,7 @@ class Shell:
             return self._let_off_bearing(inner, self._outer(inner)) + self.bearing(self.point_radius, inner) - fits
 
         fits = self.values.tooth_width + self.values.drop
-        return float(brentq(excess, 1.001 * self.rise, 0.5 * self.distance, xtol=FINE * self.distance))
+        return zero_between(excess, 1.001 * self.rise, 0.5 * self.distance, FINE * self.distance)
 
     @cached_property
     def outer(self) -> float:
@@ -194,7 +193,7 @@ def shell(values: Cylinder) -> Shell:
 
     try:
         if excess(most) > 0.0:
-            return Shell(values, float(brentq(excess, 1e-3 * most, most, xtol=FINE * most)))
+            return Shell(values, zero_between(excess, 1e-3 * most, most, FINE * most))
     except ValueError:
         raise Impossible("tooth_width", "no cylinder fits round such a tooth and between two of them") from None
     raise Impossible("lift", "needs impulse faces too steep to slide")

@@ -7,12 +7,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import brentq
 
 from watchsim.construction import scene_builder as toml
 from watchsim.construction.design import CHOSEN, ESTIMATE, Conflict, Design, Impossible, dim, sheets_of
 from watchsim.construction.outline import angle_of, circle, polar, rounded, turned
 from watchsim.construction.parts import too_little_draw
+from watchsim.construction.root import zero_between
 from watchsim.construction.swiss_lever import dart_clearance, pin_reach, rest
 from watchsim.construction.swiss_lever_outlines import (
     LEVER_BORE,
@@ -187,7 +187,7 @@ def _half_span(design: PinLever, nominal: float) -> float:
         left, right = placed.placed(1, -placed.let_off), placed.placed(-1, -placed.let_off)
         return angle_of(left) - angle_of(right) - 2.0 * nominal
 
-    return float(brentq(excess, nominal - SHIFT, nominal + SHIFT, xtol=1e-13))
+    return zero_between(excess, nominal - SHIFT, nominal + SHIFT, 1e-13)
 
 
 def _undercut(design: PinLever, draw: float) -> float:
@@ -200,7 +200,7 @@ def _undercut(design: PinLever, draw: float) -> float:
     most = 45.0
     if excess(most) < 0.0:
         raise Impossible("draw", f"would need teeth undercut by more than {most:g}°")
-    return float(brentq(excess, 0.0, most, xtol=1e-13))
+    return zero_between(excess, 0.0, most, 1e-13)
 
 
 def heel_radius(design: PinLever) -> float:
@@ -232,7 +232,7 @@ def drop_needed(design: PinLever) -> float:
         return math.inf
     if least(-MOST) > 0.0:
         return 0.0
-    return design.drop_inside + float(brentq(least, -MOST, MOST, xtol=1e-9))
+    return design.drop_inside + zero_between(least, -MOST, MOST, 1e-9)
 
 
 def _clear(design: PinLever, locks: int, more: float) -> float:

@@ -11,12 +11,12 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from watchsim.construction import scene_builder as toml
 from watchsim.construction.design import CHOSEN, Conflict, Design, Impossible, dim, sheets_of
 from watchsim.construction.outline import along, angle_of, polar, turned
 from watchsim.construction.parts import edge_half
+from watchsim.construction.root import zero_between
 from watchsim.construction.swiss_lever_outlines import (
     INERTIA,
     MOUTH,
@@ -149,7 +149,7 @@ def pin_reach(design: Swiss, lift_angle: float) -> float:
     if not gap(low) < 0.0 < gap(high):
         words = f"no jewel between {low:.3g} mm and {high:.3g} mm from the balance has this lift angle with a lever that"
         raise Impossible("lift_angle", f"{words} swings by {2.0 * design.bank:.4g}° and stands {away:g} mm off")
-    return float(brentq(gap, low, high, xtol=FINE * away, rtol=1e-14))
+    return zero_between(gap, low, high, FINE * away)
 
 
 def dart_clearance(design: Swiss, freedom: float) -> float:

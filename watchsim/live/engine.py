@@ -232,7 +232,7 @@ def _give(send: Send, number: int, begun: float, kind: str, side: Side | None = 
 
 def _sound_scene(path: Path) -> Scene:
     """The scene, if `watchsim run` would begin with it."""
-    from watchsim.analysis.expectations import expectation_faults
+    from watchsim.analysis.expectation_faults import expectation_faults
     from watchsim.mechanism.overlap import overlap_faults
 
     scene = load_set(path, {})

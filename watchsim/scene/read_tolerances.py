@@ -20,7 +20,7 @@ import numpy as np
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.variation import fold, grown
 from watchsim.scene.assign import dimension_of
-from watchsim.scene.errors import Faults
+from watchsim.scene.errors import Fault, Faults, SceneError
 from watchsim.scene.forces import CONSTANT
 from watchsim.scene.keys import TEETH, TOLERANCE, dotted, key_at, nearest, words_of
 from watchsim.scene.scene import Correlation, Scene, Tolerance
@@ -400,3 +400,40 @@ def _shares(scene: Scene, section: str, key: str) -> list[str]:
         if float(number):
             found.append(_line(f"{section}.{i}.{key}", f"±{SHARE * abs(float(number)):.4g} {unit}".strip()))
     return found
+
+
+# What does a study ask of a scene, how many watches are drawn, and how well is the yield to be known?
+
+SEQUENCES = 16  # of Sobol points that a study consists of: see studies/sampling.py
+
+
+def require_tolerances(scene: Scene) -> None:
+    """SceneError where there are none."""
+    if not scene.tolerances:
+        message = 'this scene has no tolerances. Write e.g. "contacts.0.friction" = { limits = "±0.03" } below [tolerances]'
+        raise SceneError([Fault("tolerances", message, place=str(scene.path or "scene"))])
+
+
+def checked_samples(samples: int) -> int:
+    """ValueError where so many cannot be."""
+    most = 1_000_000
+    if isinstance(samples, bool) or not isinstance(samples, int) or not SEQUENCES <= samples <= most:
+        raise ValueError(f"samples: a whole number from {SEQUENCES} to {most} is needed, not {samples}")
+    return samples
+
+
+def half_width(until: float | str | None) -> float | None:
+    """The share of "±0.5 %"; ValueError for another text. A text needs its %: 0.5 would be half of all watches."""
+    if until is None:
+        return None
+    try:
+        if isinstance(until, str) and "%" not in until:
+            raise UnitError(f'"{until}" has no %')
+        value = parse(until.strip().removeprefix("±") if isinstance(until, str) else until, NUMBER)
+    except UnitError as error:
+        raise ValueError(f'until: {error}. Write "±0.5 %"') from error
+    if not 0.0 < value < 1.0:
+        raise ValueError(
+            f'until: half the width of an interval of the yield is above 0 and below 100 %, not {until}. Write "±0.5 %"'
+        )
+    return value

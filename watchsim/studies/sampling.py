@@ -17,11 +17,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtr, ndtri
 
-from watchsim.scene.read_tolerances import matrix
+from watchsim.scene.read_tolerances import SEQUENCES, matrix
 from watchsim.scene.scene import Correlation, Tolerance
 
 Floats = NDArray[np.float64]
-SEQUENCES = 16
 BITS = 30  # of a Sobol point: no sequence may be longer than 2^30
 CLEAR = 2.0**-33  # u stays so far from 0 and 1, where a normal distribution has no value
 

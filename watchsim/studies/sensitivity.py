@@ -24,10 +24,11 @@ from watchsim.scene.roles import nominal_frequency, timekeeper
 from watchsim.scene.scene import Body, Scene
 from watchsim.studies.axes import Value
 from watchsim.studies.cycle import Cycle
+from watchsim.studies.journal import Journal, study_of
 from watchsim.studies.point import USUAL, Output, Question, Row, outputs_named
 from watchsim.studies.steady import steady
-from watchsim.studies.sweep import Progress, computed, study_of
-from watchsim.studies.workers import Executor, Journal, chosen
+from watchsim.studies.sweep import Progress, computed
+from watchsim.studies.workers import Executor, chosen
 from watchsim.units import ANGLE, LENGTH, NUMBER, Dimension, UnitError, known_unit, metric, parse, split
 
 SECTIONS = ("scene", "bodies", "springs", "torques", "damping", "contacts", DESIGN)
@@ -380,7 +381,8 @@ def _rows(
         computed(question, points, executor, rows.__setitem__, progress)
         return rows
     keys = {"sensitivity": sorted({key for change in changes for key in change})}
-    with Journal(Path(folder), study_of(question, keys), resume) as journal:  # type: ignore[arg-type]
+    study = study_of(question.scene, keys, question.by_shooting, question.duration, question.tolerance)
+    with Journal(Path(folder), study, resume) as journal:
         left = [(number, change) for number, change in points if number not in journal.rows]
         computed(question, left, executor, journal.add, progress)
         return journal.rows

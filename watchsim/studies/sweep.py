@@ -22,8 +22,9 @@ from watchsim.scene.read_settings import FUNCTION
 from watchsim.scene.scene import Scene
 from watchsim.simulation.runner import held_interrupts
 from watchsim.studies.axes import Axis, Value, axes_from_values
+from watchsim.studies.journal import Journal, study_of
 from watchsim.studies.point import USUAL, Output, Question, Row, outputs_named
-from watchsim.studies.workers import Executor, Journal, Study, chosen, scene_digest
+from watchsim.studies.workers import Executor, chosen
 
 Progress = Callable[[float, float], None]  # points done, of so many
 
@@ -181,7 +182,9 @@ def _rows(
         rows: dict[int, Row] = {}
         computed(question, list(enumerate(points)), executor, rows.__setitem__, progress)
         return rows
-    with Journal(Path(folder), study_of(question, {axis.key: list(axis.values) for axis in axes}), resume) as journal:
+    keys = {axis.key: axis.values for axis in axes}
+    study = study_of(question.scene, keys, question.by_shooting, question.duration, question.tolerance)
+    with Journal(Path(folder), study, resume) as journal:
         left = [(number, point) for number, point in enumerate(points) if number not in journal.rows]
         computed(question, left, executor, journal.add, progress)
         return journal.rows
@@ -202,17 +205,6 @@ def computed(
             keep(number, row)
             if progress is not None:
                 progress(float(done), float(len(points)))
-
-
-def study_of(question: Question, keys: Mapping[str, list[Value]]) -> Study:
-    """What decides the rows, as a resumed study must find it again."""
-    how = "by shooting" if question.by_shooting else f"by runs of {question.duration or question.scene.duration:g} s"
-    return {
-        "scene": scene_digest(question.scene),
-        "keys": dict(keys),
-        "computed": how,
-        "tolerance": question.tolerance or question.scene.tolerance,
-    }
 
 
 def processors() -> int:

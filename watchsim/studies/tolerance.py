@@ -19,17 +19,18 @@ import numpy as np
 
 from watchsim.results.folder import kept_names
 from watchsim.scene.load import changed, load
+from watchsim.scene.read_tolerances import SEQUENCES, checked_samples, half_width
 from watchsim.scene.scene import Scene
 from watchsim.scene.toml import toml_text
 from watchsim.storage.write import write_file
+from watchsim.studies.journal import NAME, Journal, read_rows
 from watchsim.studies.point import Row
-from watchsim.studies.sampling import SEQUENCES
 from watchsim.studies.section import Loop
 from watchsim.studies.sweep import Progress, computed, seconds
 from watchsim.studies.tolerance_plan import Plan, plan_of
 from watchsim.studies.tolerance_result import Linear, Samples, ToleranceStudy, analysed
-from watchsim.studies.workers import NAME, Executor, Journal, chosen, read_rows
-from watchsim.studies.yields import checked_samples, half_width, share_of, towards_failures, weighted
+from watchsim.studies.workers import Executor, chosen
+from watchsim.studies.yields import share_of, towards_failures, weighted
 
 SAMPLES = 1024
 BATCH = 16 * SEQUENCES  # samples between two looks at the interval

@@ -11,18 +11,18 @@ from typing import Any
 import numpy as np
 from scipy.special import ndtr
 
-from watchsim.analysis.summary import WATCH_KEYS, unit_of
-from watchsim.scene.errors import Fault, SceneError
+from watchsim.analysis.expectations import WATCH_KEYS, unit_of
+from watchsim.scene.errors import SceneError
 from watchsim.scene.load import changed
 from watchsim.scene.read_settings import FUNCTION
+from watchsim.scene.read_tolerances import require_tolerances
 from watchsim.scene.scene import Expectation, Scene
 from watchsim.studies.cycle import Cycle
+from watchsim.studies.journal import same_study, study_of_tolerances
 from watchsim.studies.point import OUTPUTS, Question
 from watchsim.studies.sampling import Floats, Shifted, Space
 from watchsim.studies.sensitivity import fixed_nominal
 from watchsim.studies.steady import steady
-from watchsim.studies.sweep import study_of
-from watchsim.studies.workers import same_study, scene_digest
 from watchsim.units import FREQUENCY, known_unit
 
 NUDGE = 0.05  # of the share below: how far a dimension is moved either way for the linear prediction
@@ -109,15 +109,7 @@ class Plan:
 
     def header(self) -> dict[str, Any]:
         """What a resumed or merged study must find again."""
-        keys: dict[str, list[float | str]] = {one.key: [one.nominal, one.words] for one in self.scene.tolerances}
-        return {
-            **study_of(self.question, keys),
-            "scene": scene_digest(self.scene),
-            "seed": self.seed,
-            "importance": self.importance,
-            "duration": self.question.duration,
-            "changes": dict(self.scene.written.changes) if self.scene.written else {},
-        }
+        return study_of_tolerances(self.scene, self.question.duration, self.question.tolerance, self.seed, self.importance)
 
 
 def plan_of(
@@ -135,9 +127,7 @@ def plan_of(
     resumed      the folder of a study that shall be gone on with; ValueError where that is another one
     is_computed  its samples are there, and none is computed: then no limit cycle is looked for to begin with
     """
-    if not scene.tolerances:
-        message = 'this scene has no tolerances. Write e.g. "contacts.0.friction" = { limits = "±0.03" } below [tolerances]'
-        raise SceneError([Fault("tolerances", message, place=str(scene.path or "scene"))])
+    require_tolerances(scene)
     space = Space(scene.tolerances, scene.correlated)
     varied = [("frequency", one.dimension is FREQUENCY) for one in scene.tolerances]
     varied += [("q_factor", one.key.endswith(".q_factor")) for one in scene.tolerances]

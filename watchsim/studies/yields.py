@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import betaincinv, ndtr, ndtri, stdtrit
 
-from watchsim.studies.sampling import CLEAR, SEQUENCES, Shifted, Space
-from watchsim.units import NUMBER, UnitError, parse
+from watchsim.scene.read_tolerances import SEQUENCES
+from watchsim.studies.sampling import CLEAR, Shifted, Space
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -153,28 +153,3 @@ def towards_failures(space: Space, margins: Predict) -> Shifted | None:
 def sequence_of(numbers: Ints) -> Ints:
     """Which of the replications samples with those numbers belong to."""
     return np.asarray(numbers) % SEQUENCES
-
-
-def checked_samples(samples: int) -> int:
-    """ValueError where so many cannot be."""
-    most = 1_000_000
-    if isinstance(samples, bool) or not isinstance(samples, int) or not SEQUENCES <= samples <= most:
-        raise ValueError(f"samples: a whole number from {SEQUENCES} to {most} is needed, not {samples}")
-    return samples
-
-
-def half_width(until: float | str | None) -> float | None:
-    """The share of "±0.5 %"; ValueError for another text. A text needs its %: 0.5 would be half of all watches."""
-    if until is None:
-        return None
-    try:
-        if isinstance(until, str) and "%" not in until:
-            raise UnitError(f'"{until}" has no %')
-        value = parse(until.strip().removeprefix("±") if isinstance(until, str) else until, NUMBER)
-    except UnitError as error:
-        raise ValueError(f'until: {error}. Write "±0.5 %"') from error
-    if not 0.0 < value < 1.0:
-        raise ValueError(
-            f'until: half the width of an interval of the yield is above 0 and below 100 %, not {until}. Write "±0.5 %"'
-        )
-    return value
