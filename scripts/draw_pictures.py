@@ -9,8 +9,6 @@ stand their words (docs/images/words.json), which tests compare with those of to
 scripts that measure (`MEASURED`).
 """
 
-from __future__ import annotations
-
 import contextlib
 import io
 import json
@@ -44,65 +42,42 @@ WORDS = IMAGES / "words.json"
 Make = Callable[[Path], None]  # writes a picture to a path
 
 SIZE = (960, 540)
-SHOWN = {  # profile: simulated (s), instant (s), bodies to show close (None: all)
-    "geneva": (1.0, 0.2, None),
-    "geneva_stop": (4.0, 4.0, None),
-    "graham": (2.0, 1.76, None),
-    "recoil_anchor": (2.0, 1.76, None),
-    "detent": (2.5, 2.1275, None),
-    "pin_pallet": (2.2, 2.101, None),
-    "pin_wheel": (4.0, 3.52, None),
-    "cylinder": (2.2, 2.1, None),
-    "duplex": (2.2, 2.1055, None),
-    "involute_pair": (0.2, 0.2, None),
-    "cycloidal_pair": (0.2, 0.2, ["pinion"]),
-    "jumper": (0.6, 0.49, None),
-    "cam": (0.2, 0.1, None),
-    "ratchet": (0.2, 0.15, None),
-    "verge": (4.5, 4.42, None),
-    "winding_click": (0.5, 0.2, None),
-    "snail": (3.4, 3.3, None),
-    "grasshopper": (1.5, 1.35, None),
-    "remontoir": (1.0, 0.942, None),
-    "tourbillon": (5.1, 5.0, None),
-    "governor": (1.1, 1.0, None),
+MECHANISMS = {  # profile: picture: simulated (s), instant (s), bodies to show close (None: all); movie: simulated, window, speed, options
+    "geneva": (1.0, 0.2, None, "1.5 s", "0 s:1.5 s", "1/2", ""),
+    "geneva_stop": (4.0, 4.0, None, "4 s", "0 s:4 s", "1", ""),
+    "graham": (2.0, 1.76, None, "5 s", "4 s:5 s", "1/4", ""),
+    "recoil_anchor": (2.0, 1.76, None, "5 s", "4 s:5 s", "1/4", ""),
+    "detent": (2.5, 2.1275, None, "2.6 s", "2 s:2.5 s", "adaptive", "--length 4s"),
+    "pin_pallet": (2.2, 2.101, None, "2.6 s", "2 s:2.4 s", "adaptive", "--length 4s --zoom wheel,lever"),
+    "pin_wheel": (4.0, 3.52, None, "6 s", "4 s:6 s", "1/2", ""),
+    "cylinder": (2.2, 2.1, None, "2.6 s", "2 s:2.4 s", "adaptive", "--length 4s"),
+    "duplex": (2.2, 2.1055, None, "2.6 s", "2 s:2.4 s", "adaptive", "--length 4s"),
+    "involute_pair": (0.2, 0.2, None, "0.4 s", "0.1 s:0.4 s", "1/12", "--zoom pinion"),
+    "cycloidal_pair": (0.2, 0.2, ["pinion"], "0.4 s", "0.1 s:0.4 s", "1/12", "--zoom pinion"),
+    "jumper": (0.6, 0.49, None, "1 s", "0 s:1 s", "1/4", ""),
+    "cam": (0.2, 0.1, None, "0.3 s", "0 s:0.3 s", "1/10", ""),
+    "ratchet": (0.2, 0.15, None, "0.5 s", "0 s:0.5 s", "1/8", ""),
+    "verge": (4.5, 4.42, None, "9 s", "5 s:9 s", "1", ""),
+    "winding_click": (0.5, 0.2, None, "0.5 s", "0 s:0.5 s", "1/8", ""),
+    "snail": (3.4, 3.3, None, "7.3 s", "4.95 s:7.25 s", "1/2", ""),
+    "grasshopper": (1.5, 1.35, None, "5 s", "4 s:5 s", "1/4", ""),
+    "remontoir": (1.0, 0.942, None, "1 s", "0.93 s:0.96 s", "1/120", ""),
+    "tourbillon": (5.1, 5.0, None, "5.1 s", "4 s:5 s", "1/4", ""),
+    "governor": (1.1, 1.0, None, "1.2 s", "0 s:1.2 s", "1/4", ""),
 }
 
 
 def mechanism(name: str, path: Path) -> None:
-    duration, instant, close = SHOWN[name]
+    duration, instant, close, *_ = MECHANISMS[name]
     run = ws.simulate(ws.load(ws.profiles_dir() / name), duration=duration)
     imageio.imwrite(path, ws.frame(run, instant, size=SIZE, zoom=close))
 
 
 LOOK = "--size 480x320 --fps 12"
-MOVIES = {  # profile: simulated, window, speed, further options
-    "geneva": ("1.5 s", "0 s:1.5 s", "1/2", ""),
-    "geneva_stop": ("4 s", "0 s:4 s", "1", ""),
-    "graham": ("5 s", "4 s:5 s", "1/4", ""),
-    "recoil_anchor": ("5 s", "4 s:5 s", "1/4", ""),
-    "grasshopper": ("5 s", "4 s:5 s", "1/4", ""),
-    "detent": ("2.6 s", "2 s:2.5 s", "adaptive", "--length 4s"),
-    "pin_pallet": ("2.6 s", "2 s:2.4 s", "adaptive", "--length 4s --zoom wheel,lever"),
-    "pin_wheel": ("6 s", "4 s:6 s", "1/2", ""),
-    "cylinder": ("2.6 s", "2 s:2.4 s", "adaptive", "--length 4s"),
-    "duplex": ("2.6 s", "2 s:2.4 s", "adaptive", "--length 4s"),
-    "involute_pair": ("0.4 s", "0.1 s:0.4 s", "1/12", "--zoom pinion"),
-    "cycloidal_pair": ("0.4 s", "0.1 s:0.4 s", "1/12", "--zoom pinion"),
-    "jumper": ("1 s", "0 s:1 s", "1/4", ""),
-    "cam": ("0.3 s", "0 s:0.3 s", "1/10", ""),
-    "snail": ("7.3 s", "4.95 s:7.25 s", "1/2", ""),
-    "governor": ("1.2 s", "0 s:1.2 s", "1/4", ""),
-    "ratchet": ("0.5 s", "0 s:0.5 s", "1/8", ""),
-    "winding_click": ("0.5 s", "0 s:0.5 s", "1/8", ""),
-    "remontoir": ("1 s", "0.93 s:0.96 s", "1/120", ""),
-    "verge": ("9 s", "5 s:9 s", "1", ""),
-    "tourbillon": ("5.1 s", "4 s:5 s", "1/4", ""),
-}
 
 
 def film(name: str, path: Path) -> None:
-    duration, window, speed, options = MOVIES[name]
+    *_, duration, window, speed, options = MECHANISMS[name]
     with tempfile.TemporaryDirectory() as folder:
         run = f"{folder}/{name}"
         called(f'watchsim run profiles/{name} --duration "{duration}" --no-plots -o {run}')
@@ -254,84 +229,22 @@ PLOTS_PAGE = ROOT / "docs" / "guide" / "plots.md"
 RUN = 'watchsim run profiles/swiss_lever --duration "20 s" -o swiss --no-plots'
 
 
-PLOTS = (
-    Exhibit(
-        "kinematics.png",
-        "Kinematics",
-        "Angle and velocity of every body (`--bodies`, `--quantities angle,velocity,acceleration`) over the run or a `--window`. Where the window shows a few beats, their phases are shaded and named. Impacts are jumps. However many rows a run has, every spike is drawn: of each column of dots the curve keeps the first, last, least and largest value.",
-        'watchsim plot swiss --window "19.55 s:19.85 s" -o kinematics.png',
-        "",
-    ),
-    Exhibit(
-        "phases.png",
-        "The phases of a beat",
-        "The last oscillation, with its two beats enlarged. `--phases` prints the tables of motion and energy, too.",
-        "watchsim plot swiss --kind phases -o phases.png",
-        "",
-    ),
-    Exhibit(
-        "timeline.png",
-        "The mechanism during each phase",
-        "The parts around the lever in the middle of every phase, with the contact forces on the lever as arrows of one scale; numbers show when.",
-        "watchsim plot swiss --kind timeline -o timeline.png",
-        "",
-    ),
-    Exhibit(
-        "torque.png",
-        "Torque on the balance",
-        "The moment of all contact forces on the balance over its angle, positive with its swing: below zero the balance unlocks, above it is driven. An area is the work of the forces; on it stands what the phase gives in all, with the impacts, the number of `phases.csv`. The table has both parts. They are worked out twice: from contact forces and jumps here, from the energy balance of each phase there. Where nothing keeps time, as under a calendar's driven finger, the torque that keeps each driven body in its motion, with its work between impacts.",
-        "watchsim plot swiss --kind torque -o torque.png",
-        "",
-    ),
-    Exhibit(
-        "forces.png",
-        "Forces",
-        "Normal and friction forces between the bodies of each pair, summed over their contacts, and the loads of the bearings. Impacts have impulses, not forces, and are not shown.",
-        "watchsim plot swiss --kind forces -o forces.png",
-        "",
-    ),
-    Exhibit(
-        "wear.png",
-        "Wear",
-        "Archard's index, load times sliding distance, for each millimetre of the true outline and extrapolated to a year, of the places that wear most; of the teeth, the most worn one. A corner has no length: it is a ring, with its sum below. The sums are those of `ws.wear(run)`; the page of a run shows the picture of its last beats.",
-        "watchsim plot swiss --kind wear -o wear.png",
-        "",
-    ),
-    Exhibit(
-        "portrait.png",
-        "Phase portrait",
-        "Velocity over angle of one oscillation, phases in colour.",
-        "watchsim plot swiss --kind phase-portrait -o portrait.png",
-        "",
-    ),
-    Exhibit(
-        "energy.png",
-        "Energy",
-        "What was put in over the whole run, and where it went; below, each phase of the last two beats. The black line is the work of the drive; where bars reach beyond it stores gave the rest, to the left of zero.",
-        "watchsim plot swiss --kind energy -o energy.png",
-        "",
-    ),
-    Exhibit(
-        "sound.png",
-        "Sound",
-        "What a microphone would hear of the last two beats, each noise named by what met what. 1 is the loudest; the tones of the case are typical, not computed.",
-        "watchsim plot swiss --kind sound -o sound.png",
-        "",
-    ),
-    Exhibit(
-        "timing.png",
-        "Amplitude, rate and beat error",
-        "Of every half swing of whatever swings, heard or not.",
-        "watchsim plot swiss --kind timing -o timing.png",
-        "",
-    ),
-    Exhibit(
-        "tape.png",
-        "Paper of a timegrapher",
-        "As an instrument that hears the first noise of each beat would write it.",
-        "watchsim plot swiss --kind tape -o tape.png",
-        "",
-    ),
+PLOTTED = """\
+kinematics | --window "19.55 s:19.85 s" | Kinematics | Angle and velocity of every body (`--bodies`, `--quantities angle,velocity,acceleration`) over the run or a `--window`. Where the window shows a few beats, their phases are shaded and named. Impacts are jumps. However many rows a run has, every spike is drawn: of each column of dots the curve keeps the first, last, least and largest value.
+phases | --kind phases | The phases of a beat | The last oscillation, with its two beats enlarged. `--phases` prints the tables of motion and energy, too.
+timeline | --kind timeline | The mechanism during each phase | The parts around the lever in the middle of every phase, with the contact forces on the lever as arrows of one scale; numbers show when.
+torque | --kind torque | Torque on the balance | The moment of all contact forces on the balance over its angle, positive with its swing: below zero the balance unlocks, above it is driven. An area is the work of the forces; on it stands what the phase gives in all, with the impacts, the number of `phases.csv`. The table has both parts. They are worked out twice: from contact forces and jumps here, from the energy balance of each phase there. Where nothing keeps time, as under a calendar's driven finger, the torque that keeps each driven body in its motion, with its work between impacts.
+forces | --kind forces | Forces | Normal and friction forces between the bodies of each pair, summed over their contacts, and the loads of the bearings. Impacts have impulses, not forces, and are not shown.
+wear | --kind wear | Wear | Archard's index, load times sliding distance, for each millimetre of the true outline and extrapolated to a year, of the places that wear most; of the teeth, the most worn one. A corner has no length: it is a ring, with its sum below. The sums are those of `ws.wear(run)`; the page of a run shows the picture of its last beats.
+portrait | --kind phase-portrait | Phase portrait | Velocity over angle of one oscillation, phases in colour.
+energy | --kind energy | Energy | What was put in over the whole run, and where it went; below, each phase of the last two beats. The black line is the work of the drive; where bars reach beyond it stores gave the rest, to the left of zero.
+sound | --kind sound | Sound | What a microphone would hear of the last two beats, each noise named by what met what. 1 is the loudest; the tones of the case are typical, not computed.
+timing | --kind timing | Amplitude, rate and beat error | Of every half swing of whatever swings, heard or not.
+tape | --kind tape | Paper of a timegrapher | As an instrument that hears the first noise of each beat would write it.
+"""  # name, options, title, words
+PLOTS = tuple(
+    Exhibit(f"{name}.png", title, words, f"watchsim plot swiss {how} -o {name}.png", "")
+    for name, how, title, words in (line.split(" | ") for line in PLOTTED.splitlines())
 )
 HEAD = f"""# Plots
 
@@ -362,37 +275,24 @@ def plots_page() -> str:
 
 # Single pictures of other pages, by commands.
 COAXIAL = 'watchsim run profiles/coaxial --duration "180.2 s" --no-plots -o coaxial'
-SINGLE = (
-    Exhibit(
-        "swiss_lever_beat.png",
-        "README",
-        "",
-        'watchsim plot beats --window "0.62 s:1.02 s" -o swiss_lever_beat.png',
-        'watchsim run profiles/swiss_lever --duration "1.2 s" --no-plots -o beats',
-    ),
-    Exhibit(
-        "tape_eccentric.png",
-        "docs/guide/verdicts.md",
-        "",
-        "watchsim plot eccentric --kind tape -o tape_eccentric.png",
-        'watchsim run profiles/swiss_lever --duration "60 s" --no-plots --set \'bodies.wheel.adjust.TEETH.shift=["-5 µm","0 µm"]\' -o eccentric',
-    ),
-    Exhibit(
-        "card.png",
-        "docs/guide/movies.md",
-        "",
-        "watchsim card shared -o card.png",
-        'watchsim run profiles/swiss_lever --duration "20 s" --no-plots -o shared',
-    ),
-    Exhibit(
-        "coaxial_function.png", "docs/guide/coaxial.md", "", "watchsim check profiles/coaxial --sheet coaxial_function.png", ""
-    ),
-    Exhibit(
-        "coaxial_turn.png", "docs/guide/coaxial.md", "", "watchsim check profiles/coaxial --turn --png coaxial_turn.png", ""
-    ),
-    Exhibit(
-        "coaxial_phases.png", "docs/guide/coaxial.md", "", "watchsim plot coaxial --kind phases -o coaxial_phases.png", COAXIAL
-    ),
+SINGLE = tuple(  # by command, and what is run before
+    Exhibit(picture, "", "", f"{command} {picture}", also)
+    for picture, command, also in (
+        (
+            "swiss_lever_beat.png",
+            'watchsim plot beats --window "0.62 s:1.02 s" -o',
+            'watchsim run profiles/swiss_lever --duration "1.2 s" --no-plots -o beats',
+        ),
+        (
+            "tape_eccentric.png",
+            "watchsim plot eccentric --kind tape -o",
+            'watchsim run profiles/swiss_lever --duration "60 s" --no-plots --set \'bodies.wheel.adjust.TEETH.shift=["-5 µm","0 µm"]\' -o eccentric',
+        ),
+        ("card.png", "watchsim card shared -o", 'watchsim run profiles/swiss_lever --duration "20 s" --no-plots -o shared'),
+        ("coaxial_function.png", "watchsim check profiles/coaxial --sheet", ""),
+        ("coaxial_turn.png", "watchsim check profiles/coaxial --turn --png", ""),
+        ("coaxial_phases.png", "watchsim plot coaxial --kind phases -o", COAXIAL),
+    )
 )
 TOLERANCE_DPI = 160
 
@@ -459,8 +359,8 @@ def groups() -> dict[str, dict[str, Make]]:
     """Group -> picture, by its path in docs/images -> what writes it to a path."""
     return {
         "theory": dict(THEORY),
-        "mechanisms": {f"{name}.png": partial(mechanism, name) for name in SHOWN},
-        "movies": {f"movies/{name}.gif": partial(film, name) for name in MOVIES},
+        "mechanisms": {f"{name}.png": partial(mechanism, name) for name in MECHANISMS},
+        "movies": {f"movies/{name}.gif": partial(film, name) for name in MECHANISMS},
         "pages": exhibits(SINGLE, ""),
         "gallery": exhibits(EXHIBITS, "gallery/"),
         "plots": exhibits(PLOTS, "plots/", RUN),

@@ -5,8 +5,6 @@
 The scenes (profiles/NAME/scene.toml) are written by hand; tests/reference/measure_lever.py measures what was drawn.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from pathlib import Path

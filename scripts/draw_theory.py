@@ -1,7 +1,5 @@
 """The pictures of docs/theory: the kinds of contact, and the laws of contact, whose expansion is read off the solver itself."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 
@@ -45,12 +43,8 @@ NOSE = Loop(
 )
 BOWL = Loop(
     (
-        Line(-1.5, 0.6, -1.5, -0.5),
-        Line(-1.5, -0.5, 1.5, -0.5),
-        Line(1.5, -0.5, 1.5, 0.6),
-        Line(1.5, 0.6, 1.2, 0.6),
-        Arc(0.0, 0.95, 1.25, -0.2838, -2.574),
-        Line(-1.2, 0.6, -1.5, 0.6),
+        *(Line(-1.5, 0.6, -1.5, -0.5), Line(-1.5, -0.5, 1.5, -0.5), Line(1.5, -0.5, 1.5, 0.6), Line(1.5, 0.6, 1.2, 0.6)),
+        *(Arc(0.0, 0.95, 1.25, -0.2838, -2.574), Line(-1.2, 0.6, -1.5, 0.6)),
     )
 )
 PANELS = (

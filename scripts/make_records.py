@@ -4,8 +4,6 @@ Prints what moved and rewrites the records (`--dry`: only prints). Of runs all n
 is changed by rounding, so that the records hold on any machine.
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 import tempfile

@@ -3,8 +3,6 @@
 python scripts/make_reference.py
 """
 
-from __future__ import annotations
-
 import dataclasses
 import enum
 import importlib
@@ -46,42 +44,18 @@ PAGES = {
     "analysis": (
         "Beats, forces, verdicts",
         [
-            "summary",
-            "beats",
-            "watchsim.analysis.timing:Beats",
-            "forces",
-            "watchsim.analysis.forces:Forces",
-            "verdict",
-            "watchsim.analysis.verdict_kinds:Verdict",
-            "wear",
-            "watchsim.analysis.wear:Wear",
-            "watchsim.analysis.wear:WornPlace",
+            *("summary", "beats", "watchsim.analysis.timing:Beats", "forces", "watchsim.analysis.forces:Forces", "verdict"),
+            *("watchsim.analysis.verdict_kinds:Verdict", "wear", "watchsim.analysis.wear:Wear"),
+            *("watchsim.analysis.wear:WornPlace",),
         ],
     ),
     "studies": (
         "Limit cycles, sweeps, sensitivities, positions, tolerances, better scenes, fits",
         [
-            "steady",
-            "Cycle",
-            "compare",
-            "watchsim.studies.compare:Comparison",
-            "sweep",
-            "watchsim.studies.sweep:Sweep",
-            "sensitivity",
-            "watchsim.studies.sensitivity:Sensitivity",
-            "positions",
-            "watchsim.studies.positions:Positions",
-            "shock",
-            "watchsim.studies.shock:Blow",
-            "shock_map",
-            "watchsim.studies.shock:ShockMap",
-            "tolerance",
-            "ToleranceStudy",
-            "merge",
-            "improve",
-            "watchsim.studies.goals:Better",
-            "fit",
-            "watchsim.studies.fit:Fit",
+            *("steady", "Cycle", "compare", "watchsim.studies.compare:Comparison", "sweep", "watchsim.studies.sweep:Sweep"),
+            *("sensitivity", "watchsim.studies.sensitivity:Sensitivity", "positions", "watchsim.studies.positions:Positions"),
+            *("shock", "watchsim.studies.shock:Blow", "shock_map", "watchsim.studies.shock:ShockMap", "tolerance"),
+            *("ToleranceStudy", "merge", "improve", "watchsim.studies.goals:Better", "fit", "watchsim.studies.fit:Fit"),
         ],
     ),
     "pictures": (

@@ -4,8 +4,6 @@ python scripts/make_site.py            the pages; the notebook runs once, and ag
 python scripts/make_site.py linkcheck  looks whether links to other sites lead somewhere
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]

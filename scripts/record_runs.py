@@ -5,8 +5,6 @@ come apart says how far another machine may be off. Runs that come apart altoget
 A deliberate change of the solver is reviewed by what is printed here; without --write nothing is changed.
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 from collections import Counter

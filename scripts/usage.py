@@ -1,7 +1,5 @@
 """How does a script with nothing but a few places to read or write answer --help?"""
 
-from __future__ import annotations
-
 import argparse
 
 

@@ -4,8 +4,6 @@ This folder is put on the path, so that `naive` (slow oracles) and `reference` (
 are the folders whose made-up scenes and drawings tests in other folders use, too.
 """
 
-from __future__ import annotations
-
 import gc
 import os
 import signal

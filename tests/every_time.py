@@ -1,7 +1,5 @@
 """Which of many cases are tried every time? All of them are at night."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from typing import Any
 

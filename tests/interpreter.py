@@ -1,7 +1,5 @@
 """What does a fresh interpreter print?"""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

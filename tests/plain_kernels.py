@@ -1,7 +1,5 @@
 """How is a kernel called from a test without being compiled?"""
 
-from __future__ import annotations
-
 import builtins
 from collections.abc import Callable
 from types import CodeType, FunctionType

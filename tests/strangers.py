@@ -3,8 +3,6 @@
 The project stands alone: what needs them is skipped without them, and the same is tested on drawings of our own.
 """
 
-from __future__ import annotations
-
 import shutil
 from collections.abc import Callable
 from pathlib import Path

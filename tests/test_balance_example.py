@@ -1,7 +1,5 @@
 """Are the numbers of docs/guide/mass-and-inertia.md those of the package, and those of the handbook?"""
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 

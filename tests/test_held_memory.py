@@ -1,7 +1,5 @@
 """Does a process of the command line keep what it frees for the next array?"""
 
-from __future__ import annotations
-
 import platform
 
 import pytest

@@ -1,7 +1,5 @@
 """Are kernels compiled once and then found, is damaged machine code compiled again, and does each change give new code?"""
 
-from __future__ import annotations
-
 import os
 import runpy
 import shutil

@@ -1,7 +1,5 @@
 """Is a record of named fields one piece of memory, which kernels and Python read and write alike?"""
 
-from __future__ import annotations
-
 from types import GenericAlias
 from typing import Annotated, Any
 

@@ -1,7 +1,5 @@
 """Does the nightly script run every step, and say which failed?"""
 
-from __future__ import annotations
-
 import re
 import subprocess
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Is the package whole when it is installed, and do its papers agree?"""
 
-from __future__ import annotations
-
 import re
 import subprocess
 import sys

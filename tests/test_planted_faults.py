@@ -1,7 +1,5 @@
 """Is each planted fault one small change that still is Python, and are texts, types and messages left alone?"""
 
-from __future__ import annotations
-
 import ast
 import sys
 from pathlib import Path
@@ -118,12 +116,12 @@ h = lambda x: x + 1
 
 def test_functions_are_known_by_their_names_wherever_they_stand() -> None:
     """Not by lines, which move: inner ones, methods, a setter of its property's name."""
-    import named_functions
+    import reached
 
     for text, shift in ((NESTED, 0), ("\n# Something above.\n" + NESTED, 2)):
-        lines = {line: named_functions.function_of(text, line + shift) for line in range(2, 18)}
+        lines = {line: reached.function_of(text, line + shift) for line in range(2, 18)}
         assert lines == {
             **{2: "", 3: "", 4: "", 5: "", 6: "f", 7: "f.g", 8: "f", 9: "", 10: "", 11: "", 12: "", 13: "C.f"},
             **{14: "", 15: "", 16: "C.f 2", 17: "lambda"},
         }
-        assert [one.first - shift for one in named_functions.functions(text)] == [3, 6, 11, 14, 17]
+        assert [one.first - shift for one in reached.functions(text)] == [3, 6, 11, 14, 17]

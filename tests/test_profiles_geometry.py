@@ -4,8 +4,6 @@ The parts are turned against one another with shapely (tests/reference/measure_l
 simulation.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import sys

@@ -1,7 +1,5 @@
 """Does the repository need nothing that lies beside it?"""
 
-from __future__ import annotations
-
 import ast
 import re
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Does every signal stop a command where stopping is safe, with its own status, and with what was simulated on the disk?"""
 
-from __future__ import annotations
-
 import json
 import os
 import signal

@@ -1,7 +1,5 @@
 """Is the tree seen at one glance, and does every script say what it is for?"""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

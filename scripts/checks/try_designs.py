@@ -7,8 +7,6 @@ Each accepted design is drawn, read back from its drawings and looked at for ove
 are simulated for so many seconds (default 2), one line each. Exits with 1 where a drawing is not sound or bodies overlap.
 """
 
-from __future__ import annotations
-
 import math
 import random
 import re

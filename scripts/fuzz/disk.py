@@ -6,8 +6,6 @@ where it was to go, or where the message says.
 `--stride N` takes every N-th.
 """
 
-from __future__ import annotations
-
 import argparse
 import contextlib
 import io

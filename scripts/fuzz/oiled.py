@@ -10,8 +10,6 @@ differ by 100 tolerances.
 Exit status: 0 nothing wrong, 1 something was.
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 import time
@@ -24,11 +22,9 @@ from numpy.typing import NDArray
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from hunt.books import OPPOSED
-from hunt.energies import of_a_step, unopposed
-from hunt.generator.generate import mechanism
-from hunt.generator.material import reach
-from hunt.generator.parts import Dice
+from hunt.books import OPPOSED, of_a_step, unopposed
+from hunt.generate import mechanism
+from hunt.parts import Dice, reach
 from hunt.views import View, perturbed, views
 
 from watchsim.scene.errors import SceneError

@@ -5,8 +5,6 @@ sound archives), and has `plot`, `movie` or `run --resume` read them, or what `-
 exit status 4, a traceback, the death of the process, or takes more than 20 s. `--only K` repeats number K.
 """
 
-from __future__ import annotations
-
 import argparse
 import contextlib
 import io
@@ -15,20 +13,17 @@ import random
 import shutil
 import sys
 import tempfile
-import time
 import zipfile
-from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+from rounds import add_numbers, campaign, in_a_process, judged
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT), str(Path(__file__).parent)]
-import scenes  # noqa: E402
-
+sys.path.insert(0, str(ROOT))
 SCENE = str(ROOT / "profiles" / "bench_lever")
 FILES = ("trajectory.npz", "state.npz", "scene.lock.toml", "summary.json")
-NOTED = 50  # after so many folders a line says how far it has come
 COMMANDS = ("plot", "plot", "movie", "resume")
 NASTY: tuple[object, ...] = (None, [], {}, "x", -1, 10**30, 1e300, [[]], {"a": 1}, True, "DURATION")
 
@@ -82,16 +77,12 @@ def _inside(rng: random.Random, path: Path, kind: str) -> None:
         else:
             arrays[name] = np.zeros((3, 3))
     else:
-        arrays[name] = rng.choice((_shorter, _nan, _flat, _other_type, _zeros, _huge))(rng, array)
+        arrays[name] = rng.choice(CHANGES)(rng, array)
     with zipfile.ZipFile(path, "w") as file:
         for name, array in arrays.items():
             buffer = io.BytesIO()
             np.lib.format.write_array(buffer, np.ascontiguousarray(array), allow_pickle=False)
             file.writestr(f"{name}.npy", buffer.getvalue())
-
-
-def _shorter(rng: random.Random, array: np.ndarray) -> np.ndarray:
-    return array[: rng.randrange(len(array) + 1)] if array.ndim else array
 
 
 def _nan(rng: random.Random, array: np.ndarray) -> np.ndarray:
@@ -101,43 +92,35 @@ def _nan(rng: random.Random, array: np.ndarray) -> np.ndarray:
     return array
 
 
-def _flat(rng: random.Random, array: np.ndarray) -> np.ndarray:
-    return array.reshape(-1)
-
-
 def _other_type(rng: random.Random, array: np.ndarray) -> np.ndarray:
     return np.zeros(array.shape, rng.choice(("i1", "f4", "U3", "c16", "?")))
 
 
-def _zeros(rng: random.Random, array: np.ndarray) -> np.ndarray:
-    return np.zeros_like(array)
+def _huge(_: random.Random, array: np.ndarray) -> np.ndarray:
+    whole = array.dtype.kind in "iu" and array.dtype.itemsize > 2
+    return np.full_like(array, 10**9 if whole else 100) if array.dtype.names is None else array
 
 
-def _huge(rng: random.Random, array: np.ndarray) -> np.ndarray:
-    return (
-        np.full_like(array, 10**9 if array.dtype.kind in "iu" and array.dtype.itemsize > 2 else 100)
-        if array.dtype.names is None
-        else array
-    )
+CHANGES: tuple[Callable[[random.Random, np.ndarray], np.ndarray], ...] = (
+    lambda rng, array: array[: rng.randrange(len(array) + 1)] if array.ndim else array,
+    *(_nan, lambda _, array: array.reshape(-1), _other_type, lambda _, array: np.zeros_like(array), _huge),
+)
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--count", type=int, default=200)
-    parser.add_argument("--first", type=int, default=0)
-    parser.add_argument("--only", type=int)
+    add_numbers(parser, 200)
     parser.add_argument(
         "--command", choices=("plot", "movie", "resume", "report", "sound", "export"), help="read all by this one"
     )
     args = parser.parse_args()
     from watchsim.cli import main as watchsim
 
-    kinds: Counter[str] = Counter()
-    slowest, start = (0.0, -1), time.perf_counter()
     with tempfile.TemporaryDirectory() as parent:
         whole = Path(parent) / "whole"
         watchsim(["run", SCENE, "--duration", "0.2 s", "-o", str(whole)])
-        for number in range(args.first, args.first + args.count) if args.only is None else [args.only]:
+
+        def round_of(number: int) -> tuple[str, str, float]:
             rng = random.Random(f"results {number}")
             folder = Path(parent) / "copy"
             shutil.rmtree(folder, ignore_errors=True)
@@ -145,19 +128,12 @@ def main() -> None:
             for _ in range(rng.choice((1, 1, 2))):
                 damage(rng, folder)
             command = args.command or rng.choice(COMMANDS)
-            words, took = scenes.in_a_process(Path(parent), _arguments(command, folder))
-            slowest = max(slowest, (took, number))
-            kind = words.splitlines()[0] if words else "nothing said"
-            kinds[kind] += 1
-            if sum(kinds.values()) % NOTED == 0:
-                print(f"{sum(kinds.values())} done, to number {number}: {dict(sorted(kinds.items()))}", flush=True)
-            if kind not in ("0", "1", "2", "3") or args.only is not None:
-                print(f"{number} ({command}): {words}", flush=True)
-    print(
-        f"{sum(kinds.values())} results folders from number {args.first}: exit statuses {dict(sorted(kinds.items()))}; "
-        f"{time.perf_counter() - start:.0f} s, the slowest {slowest[0]:.1f} s (number {slowest[1]})"
-    )
-    sys.exit(bool(set(kinds) - {"0", "1", "2", "3"}) and args.only is None)
+            answer = in_a_process(Path(parent), lambda: judged(_arguments(command, folder)))
+            for report in Path(parent).glob("watchsim-fault-*.txt"):
+                report.unlink()
+            return command, *answer
+
+        sys.exit(campaign(args, round_of, "results folders"))
 
 
 def _arguments(command: str, folder: Path) -> list[str]:

@@ -6,32 +6,110 @@ status 4, a traceback, the death of the process or more than 20 s. Files are num
 machine, so `--only K` repeats it. With `--seed WORD` it is other damages, and of designs as well.
 """
 
-from __future__ import annotations
-
 import argparse
-import contextlib
-import io
-import os
 import random
-import resource
+import re
 import shutil
-import signal
 import sys
 import tempfile
-import time
-from collections import Counter
 from pathlib import Path
 
-from scene_accidents import ACCIDENTS
+from rounds import FINE, add_numbers, campaign, in_a_process, judged
+
+# Which accidents happen to a scene file? Each takes a random generator and a text, and returns another text.
+
+
+VALUES = (  # in place of what a key has
+    *("", "0", "-1", "1", "1e308", "1e-320", "5e101", "nan", "inf", "-inf", "true", "[]", "{}", "[[]]", "[{}]", '""', '"x"'),
+    *("'''a'''", '"5e101 mm"', '"-1 mm"', '"0 mm"', '"1e-320 g"', '"1e400 m"', '"nan m"', '"1 mm/0"', '"28800"'),
+    *('"28800 vph"', '"1e5000 Hz"', '"every 99999999999999999999"', '"every 0"', '"events"', '["1 s", "0 s"]'),
+    *('["0 s", "1e99 s"]', "1979-05-27T07:32:00Z", "07:32:00"),
+    *("9" * 5000, f'"{"9" * 5000} mm"', f'"every {"9" * 5000}"'),
+    *("[" * 400 + "]" * 400, "{a=" * 400 + "1" + "}" * 400, "[" * 5000),
+    *('"wheel"', '"wheel.TEETH"', '["wheel.TEETH", "wheel.TEETH"]', '["a", "b", "c"]', '"../../etc/passwd"', '"/dev/null"'),
+    *('"."', "1_0", '"\\u0000"', '"\\ud800"', '"µ"', '"1 µN·m"', "[1, 2]", '["1 mm", "1 mm"]', '["0 mm", "0 mm", "0 mm"]'),
+    *("0x10", "1e-14", '"free"', '"fixed"', '"slide"', '"moving"', "[0.0, 0.0]", "[1.0, 0.0]", '"-0 mm"', '"1 mm mm mm"'),
+    *('"((((mm))))"', '"1 mm^9"', '"1 mm^-9"'),
+)
+LINES = (  # put in somewhere
+    *("[bodies]", "[[bodies]]", "[[contacts]]", "[[springs]]", "[[torques]]", "[[damping]]", "[run]", "[expect]", "[scene]"),
+    *("[lock]", "[bodies.x]", "[bodies.'']", "[bodies.'a.b']", "[timegrapher]", "[bodies.wheel.solids]"),
+    *("[[bodies.wheel.solids]]", "[[]]", "["),
+    *("[bodies]\ndrawing = 'x.dxf'\nposition = ['0 mm', '0 mm']", "[[contacts]]\n[[contacts]]", "bodies = 1", "contacts = [1]"),
+    *("contacts = [[]]", "springs = {}", "x = 1", "=", "a.b.c.d = 1"),
+    *("[a." + "a." * 400 + "a]", "\x00", "\ufeff", "# \x01", "[expect.x]"),
+    *('"amplitude" = 1', '"amplitude" = { value = "1", tolerance = "1" }', '"x.y" = { value = "1 s", tolerance = "-1 s" }'),
+    *("[lock.drawings]", 'on = "wheel"', 'on = "balance"', 'record = "statistics"', "tolerance = 1e-14"),
+    *('duration = "1e300 s"',),
+)
+
+
+def _value(rng: random.Random, text: str) -> str:
+    """Another value for a key."""
+    lines = text.splitlines()
+    places = [k for k, line in enumerate(lines) if re.match(r"\s*[\w\"]+\s*=", line)]
+    if places:
+        k = rng.choice(places)
+        lines[k] = f"{lines[k].split('=')[0]}= {rng.choice(VALUES)}"
+    return "\n".join(lines)
+
+
+def _line(rng: random.Random, text: str) -> str:
+    """Another line somewhere."""
+    lines = text.splitlines()
+    lines.insert(rng.randrange(len(lines) + 1), rng.choice(LINES))
+    return "\n".join(lines)
+
+
+def _lost(rng: random.Random, text: str) -> str:
+    """Some lines lost."""
+    lines = text.splitlines()
+    at = rng.randrange(len(lines) + 1)
+    return "\n".join(lines[:at] + lines[at + rng.randrange(1, 6) :])
+
+
+def _moved(rng: random.Random, text: str) -> str:
+    """Some lines doubled, or in another place."""
+    lines = text.splitlines() or [""]
+    at, to = rng.randrange(len(lines)), rng.randrange(len(lines))
+    part = lines[at : at + rng.randrange(1, 8)]
+    return "\n".join(lines[:to] + part + lines[to:])
+
+
+def _key(rng: random.Random, text: str) -> str:
+    """A key or a name misspelt."""
+    words = list(re.finditer(r"[A-Za-z_]{2,}", text))
+    if not words:
+        return text
+    word = rng.choice(words)
+    other = rng.choice((word[0][:-1], word[0] + "s", rng.choice(words)[0], word[0].upper(), ""))
+    return text[: word.start()] + other + text[word.end() :]
+
+
+def _number(rng: random.Random, text: str) -> str:
+    """Another number."""
+    numbers = list(re.finditer(r"-?\d+\.?\d*(e-?\d+)?", text))
+    if not numbers:
+        return text
+    found = rng.choice(numbers)
+    other = rng.choice(
+        ("0", "-1", "1e9", "1e-9", "1e30", "1e-30", "1e300", "-" + found[0], found[0] + "0", "1e-320", "99999999999999999999")
+    )
+    return text[: found.start()] + other + text[found.end() :]
+
+
+def _cut(rng: random.Random, text: str) -> str:
+    return text[: rng.randrange(len(text) + 1)]
+
+
+ACCIDENTS = (_value, _value, _value, _line, _line, _lost, _moved, _key, _key, _number, _number, _number, _cut)
+
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 SCENES = ("profiles/swiss_lever", "profiles/bench_lever", "profiles/incline", "profiles/balance")
 DESIGNS = ("carriage", "coaxial", "geneva", "graham", "involute_pair", "recoil_anchor", "set_a")
 SEEDED = (*SCENES, *(f"profiles/{name}" for name in DESIGNS))
-SECONDS = 20
-NOTED = 100  # after so many files a line says how far it has come
-MEMORY = 4 << 30
 
 
 def damaged(number: int, seed: str) -> tuple[str, bytes]:
@@ -46,56 +124,6 @@ def damaged(number: int, seed: str) -> tuple[str, bytes]:
         at = rng.randrange(len(content) + 1)
         content = content[:at] + bytes(rng.randrange(256) for _ in range(rng.randrange(1, 4))) + content[at:]
     return name, content
-
-
-def judged(arguments: list[str]) -> tuple[int, str]:
-    """Exit status of a command, and what it said."""
-    from watchsim.cli import main
-
-    said = io.StringIO()
-    with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
-        status = main(arguments)
-    return status, said.getvalue()
-
-
-def judge(*commands: list[str]) -> tuple[str, str]:
-    """The exit status of the last command that is reached, each one where the one before was fine, and a fault's report."""
-    text, status = "", 0
-    for arguments in commands:
-        status, said = judged(arguments) if status == 0 else (status, "")
-        text += said
-    if status == 4 or "Traceback" in text:
-        where = [path.read_text()[-600:] for path in Path().glob("watchsim-fault-*.txt")]
-        return "a fault of the program", text[-1500:] + "".join(where)
-    return str(status), ""
-
-
-def in_a_process(place: Path, *commands: list[str]) -> tuple[str, float]:
-    """What became of the commands in a process of its own with little time and memory, and the seconds it took."""
-    reading, writing = os.pipe()
-    start = time.perf_counter()
-    child = os.fork()
-    if child == 0:
-        try:
-            os.chdir(place)
-            resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
-            resource.setrlimit(resource.RLIMIT_CPU, (SECONDS, SECONDS))
-            os.write(writing, "\n".join(judge(*commands)).encode()[:4000])
-        except BaseException as error:
-            os.write(writing, f"escaped: {type(error).__name__}: {error}".encode()[:4000])
-        finally:
-            os._exit(0)
-    os.close(writing)
-    status = os.waitpid(child, 0)[1]
-    with os.fdopen(reading) as pipe:
-        words = pipe.read()
-    took = time.perf_counter() - start
-    if os.WIFSIGNALED(status):
-        slow = os.WTERMSIG(status) in (signal.SIGXCPU, signal.SIGKILL)
-        words = f"more than {SECONDS} s of processor time" if slow else f"died of signal {os.WTERMSIG(status)}"
-    for report in place.glob("watchsim-fault-*.txt"):
-        report.unlink()
-    return words, took
 
 
 def one(number: int, seed: str, copies: Path, command: str) -> tuple[str, float]:
@@ -113,18 +141,18 @@ def one(number: int, seed: str, copies: Path, command: str) -> tuple[str, float]
         commands.append(["export", str(place), *out])
     elif command == "turn":
         commands.append(["check", str(place), "--turn", "--swing", "20°"])
-    answer = in_a_process(copies, *commands)
+    answer = in_a_process(copies, lambda: judged(*commands))
+    for report in copies.glob("watchsim-fault-*.txt"):
+        report.unlink()
     shutil.rmtree(place.parent / "out", ignore_errors=True)
     return answer
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--count", type=int, default=500)
-    parser.add_argument("--first", type=int, default=0)
+    add_numbers(parser, 500)
     parser.add_argument("--seed", default="")
     parser.add_argument("--command", choices=("run", "steady", "export", "turn"), default="run", help="besides the check")
-    parser.add_argument("--only", type=int, help="print this file and what becomes of it")
     parser.add_argument("-o", "--output", type=Path, default=Path("results/fuzz"), help="where files that fail are kept")
     args = parser.parse_args()
     from watchsim.analysis.expectation_faults import expectation_faults
@@ -134,30 +162,20 @@ def main() -> None:
     # Loaded once, for all the processes that are forked.
     simulate(load_scene(str(ROOT / SCENES[2])), 1e-3)
     expectation_faults(load_scene(str(ROOT / SCENES[1])))
-    kinds: Counter[str] = Counter()
-    slowest = (0.0, -1)
-    start = time.perf_counter()
     with tempfile.TemporaryDirectory() as folder:
         for name in SEEDED:
             shutil.copytree(ROOT / name, Path(folder) / Path(name).name)
-        for number in range(args.first, args.first + args.count) if args.only is None else [args.only]:
+
+        def round_of(number: int) -> tuple[str, str, float]:
+            name, content = damaged(number, args.seed)
             words, took = one(number, args.seed, Path(folder), args.command)
-            slowest = max(slowest, (took, number))
-            kind = words.splitlines()[0] if words else "nothing said"
-            kinds[kind] += 1
-            if sum(kinds.values()) % NOTED == 0:
-                print(f"{sum(kinds.values())} done, to number {number}: {dict(sorted(kinds.items()))}", flush=True)
-            if kind not in ("0", "1", "2", "3") or args.only is not None:
+            if words not in FINE or args.only is not None:
                 args.output.mkdir(parents=True, exist_ok=True)
-                name, content = damaged(number, args.seed)
                 (args.output / f"scene-{args.seed}{number}.toml").write_bytes(content)
-                print(f"{number} ({name}): {words}", flush=True)
-    seeded = f" with seed {args.seed}" if args.seed else ""
-    print(
-        f"{sum(kinds.values())} scenes from number {args.first}{seeded}: exit statuses {dict(sorted(kinds.items()))}; "
-        f"{time.perf_counter() - start:.0f} s, the slowest {slowest[0]:.1f} s (number {slowest[1]})"
-    )
-    sys.exit(bool(set(kinds) - {"0", "1", "2", "3"}) and args.only is None)
+            return name, words, took
+
+        what = f"scenes{f' of seed {args.seed}' if args.seed else ''}"
+        sys.exit(campaign(args, round_of, what))
 
 
 if __name__ == "__main__":

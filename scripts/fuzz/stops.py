@@ -3,28 +3,22 @@
 Starts commands again and again (those of COMMANDS), sends each one a signal at a random moment of its life, and looks at what
 it leaves. Rounds are numbered: number k takes the same command, and the same share of that command's usual time, on every
 machine. Each fourth one is a process of its own, with an interpreter that starts and loads; the others are copies of a process
-that has loaded everything (see warm.py).
+that has loaded everything (`Forked`).
 
 KILL: no half file under a final name, no leftover after the next command's sweep, the user's own file is there; each fifth time
 the next command is run as well, and must be fine.
---helpers pool: KILL goes to a worker process of a study instead, each fourth time to the study itself. --helpers cluster: to a
-worker of a local dask cluster, which is replaced, or to its scheduler or the study, each fourth time. The study ends with
-status 0, or is gone on with; its rows and table are then those of one that nobody disturbed, no traceback, no orphan.
 INT and TERM: exit status 130 and 143, or 0 where the command had ended before; results readable where there are any, no
 traceback, no leftover.
 """
 
-from __future__ import annotations
-
 import argparse
+import atexit
 import contextlib
-import csv
-import json
+import io
 import os
 import random
 import shutil
 import signal
-import socket
 import subprocess
 import sys
 import tempfile
@@ -32,33 +26,97 @@ import time
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import NoReturn
+
+# How are thousands of commands tried in minutes?
+#
+# Each one in a forked copy of this process, which has loaded everything and run every command once: a fifth of the time of a
+# fresh process, half of whose life is loading. What a copy does from its first instruction on is what `watchsim` does.
+
 
 ROOT = Path(__file__).resolve().parents[2]
+SIGNALS = (signal.SIGINT, signal.SIGTERM)
+
+
+def load(commands: Mapping[str, Sequence[str]], made: Path, place: Path) -> None:
+    """Run every command once in this process, each in a copy `place` of the folder `made`: nothing is left to be loaded."""
+    from watchsim.cli import main
+
+    before = Path.cwd()
+    try:
+        for arguments in commands.values():
+            os.chdir(before)
+            shutil.rmtree(place, ignore_errors=True)
+            shutil.copytree(made, place)
+            os.chdir(place)
+            with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()) as said:
+                status = main(list(arguments))
+            if status != 0:
+                raise SystemExit(f"{' '.join(arguments)}: {status} {said.getvalue()}")
+    finally:
+        os.chdir(before)
+
+
+class Forked:
+    """A watchsim command in a copy of this process; what it says goes to the file `said`."""
+
+    def __init__(self, arguments: Sequence[str], place: Path, said: Path) -> None:
+        self.said = said
+        self.returncode: int | None = None
+        sys.stdout.flush()
+        # Signals wait until the command hears them, as they do for a process whose interpreter has begun with them held back.
+        signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)
+        self.pid = os.fork()
+        if self.pid == 0:
+            self._become(arguments, place)
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, SIGNALS)
+
+    def _become(self, arguments: Sequence[str], place: Path) -> None:
+        try:
+            atexit._clear()  # what is to be done at the end of the parent is not to be done here
+            os.chdir(place)
+            output = os.open(self.said, os.O_CREAT | os.O_WRONLY | os.O_TRUNC)
+            os.dup2(output, 1)
+            os.dup2(output, 2)
+            sys.argv = ["watchsim", *arguments]
+            from watchsim.process import process
+
+            process()
+        finally:
+            os._exit(99)
+
+    def poll(self) -> int | None:
+        """The exit status, as of a subprocess; None while it runs."""
+        if self.returncode is None:
+            number, status = os.waitpid(self.pid, os.WNOHANG)
+            self._ended(status if number else None)
+        return self.returncode
+
+    def send_signal(self, which: int) -> None:
+        if self.poll() is None:
+            os.kill(self.pid, which)
+
+    def communicate(self) -> tuple[str, str]:
+        """Wait for the end; what was said."""
+        if self.returncode is None:
+            self._ended(os.waitpid(self.pid, 0)[1])
+        return self.said.read_text(errors="replace"), ""
+
+    def _ended(self, status: int | None) -> None:
+        if status is not None:
+            self.returncode = os.waitstatus_to_exitcode(status)
+
+
 sys.path[:0] = [str(ROOT), str(Path(__file__).parent)]
-from warm import Forked, load  # noqa: E402
 
 LEVER = str(ROOT / "profiles" / "bench_lever")
 LONG = "2 s"
-PF_EXITING = 4  # Linux, include/linux/sched.h
 STATUS = {signal.SIGKILL: -9, signal.SIGINT: 130, signal.SIGTERM: 143}
+PF_EXITING = 4  # Linux, include/linux/sched.h
 FRESH = 4  # each so many-th round is a process of its own
 COMMANDS = {
     "run": ["run", LEVER, "--duration", LONG, "-o", "new"],
     "long": ["run", LEVER, "--duration", "60 s", "--record", "all", "--no-plots", "-o", "new"],
-    "steps": [
-        "run",
-        LEVER,
-        "--duration",
-        "0.3 s",
-        "--method",
-        "moreau",
-        "--no-plots",
-        "--set",
-        "run.tolerance=1e-6",
-        "-o",
-        "new",
-    ],
+    "steps": ["run", LEVER, "--duration", "0.3 s", "--method=moreau", "--no-plots", "--set", "run.tolerance=1e-6", "-o", "new"],
     "force": ["run", LEVER, "--duration", LONG, "-o", "old", "--force"],
     "resume": ["run", LEVER, "--duration", "1 s", "--resume", "old"],
     "movie": ["movie", "old", "--window", "0.01 s:0.19 s", "--speed", "1/5", "--size", "320x180"],
@@ -163,122 +221,6 @@ def one(
     return name, str(process.returncode), wrong
 
 
-HELPED = {
-    "sweep": ["sweep", LEVER, "contacts.0.friction=0.1:0.2:12", "--duration", "1 s", "--no-plots", "-o", "study"],
-    "tolerance": ["tolerance", "desk", "--samples", "16", "--no-plots", "-o", "study"],
-}
-TOLERANCES = """
-"amplitude" = { min = "290°" }
-[tolerances]
-"torques.0.value" = { limits = "±0.5 µN·m" }
-"contacts.0.friction" = { limits = "±0.03" }
-"bodies.balance.inertia" = { limits = "±0.05 mg·cm²" }
-"bodies.lever.position.1" = { limits = "±1 µm" }
-"""
-
-
-def desk(place: Path) -> None:
-    """A scene with tolerances."""
-    shutil.copytree(LEVER, place / "desk", ignore=shutil.ignore_patterns("results"))
-    scene = place / "desk" / "scene.toml"
-    scene.write_text(scene.read_text().partition("[expect]")[0] + "[expect]" + TOLERANCES)
-
-
-def studied(place: Path, arguments: list[str]) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "watchsim", *arguments]
-    return subprocess.run(command, cwd=place, env=environment(), check=False, capture_output=True, text=True)
-
-
-def outcome(folder: Path) -> tuple[list[str], list[str]]:
-    """The rows of a study, in the order of their numbers, and its table, both without what a point took."""
-    rows = [json.loads(line) for line in (folder / "rows.jsonl").read_text().splitlines()]
-    lines = list(csv.reader(next(folder.glob("*.csv")).open()))
-    timed = lines[0].index("seconds") if "seconds" in lines[0] else len(lines[0])
-    table = [",".join(line[:timed] + line[timed + 1 :]) for line in lines]
-    return [json.dumps({**row, "seconds": 0}) for row in sorted(rows, key=lambda row: row.get("point", -1000))], table
-
-
-def helped(
-    number: int, kind: str, arguments: list[str], place: Path, usual: float, undisturbed: object
-) -> tuple[str, str, list[str]]:
-    """One round in which something of a study is killed: who, how the study ended, what is wrong."""
-    rng = random.Random(f"{kind} {number}")
-    shutil.rmtree(place, ignore_errors=True)
-    place.mkdir()
-    desk(place)
-    cluster: dict[str, subprocess.Popen[bytes]] = {}
-    more = ["--workers", "2"]
-    if kind == "cluster":
-        with socket.socket() as free:
-            free.bind(("127.0.0.1", 0))
-            address = f"tcp://127.0.0.1:{free.getsockname()[1]}"
-        cluster = {"scheduler": _dask("scheduler", "--host", address, "--no-dashboard"), "worker": _dask_worker(address)}
-        more = ["--scheduler", address]
-        time.sleep(2.0)
-    process = start([*arguments, *more], place, fresh=True)
-    assert isinstance(process, subprocess.Popen)
-    helpers: set[int] = set()
-    until = time.monotonic() + rng.random() * usual
-    while process.poll() is None and time.monotonic() < until:
-        helpers |= _descendants(process.pid)
-        time.sleep(0.02)
-    alive = sorted(_descendants(process.pid))
-    who = (["worker"] * 2 + ["scheduler", "study"] if kind == "cluster" else ["helper"] * 3 + ["study"])[number % 4]
-    who = "study" if who == "helper" and not alive else who
-    if who in cluster:
-        cluster[who].kill()
-        if who == "worker":
-            cluster["another worker"] = _dask_worker(address)
-    else:
-        with contextlib.suppress(ProcessLookupError):
-            os.kill(process.pid if who == "study" else rng.choice(alive), signal.SIGKILL)
-    while process.poll() is None:
-        helpers |= _descendants(process.pid)
-        time.sleep(0.05)
-    said = "".join(process.communicate())
-    for one in cluster.values():
-        one.kill()
-        one.wait()
-    fine = {"scheduler": (0, 2, 3), "study": (0, -9)}.get(who, (0,))
-    wrong = [] if process.returncode in fine else [f"exit status {process.returncode}: {said}"]
-    wrong += [said] if "Traceback" in said or "Error" in said else []
-    time.sleep(0.5)
-    if left := [pid for pid in helpers if Path(f"/proc/{pid}").exists() and not _is_ending(pid)]:
-        wrong.append(f"orphans {left}")
-    return who, f"{who} {process.returncode}", wrong + _gone_on_with(place, arguments, process.returncode != 0, undisturbed)
-
-
-def _gone_on_with(place: Path, arguments: list[str], unfinished: bool, undisturbed: object) -> list[str]:
-    """What is wrong with the study when it is done, after --resume where it was not."""
-    rows = place / "study" / "rows.jsonl"
-    kept = rows.read_bytes().splitlines(keepends=True) if rows.is_file() else []
-    again = studied(place, [*arguments, "--workers", "1", "--resume"]) if unfinished else None
-    if again and again.returncode != 0:
-        return [f"gone on with: {again.returncode} {again.stderr}"]
-    now = rows.read_bytes().splitlines(keepends=True)
-    whole = [line for line in kept if line.endswith(b"\n")]
-    wrong = [] if now[: len(whole)] == whole else [f"{len(whole)} lines were there after the kill, and not all of them stayed"]
-    return wrong if outcome(place / "study") == undisturbed else [*wrong, "not what an undisturbed study gives"]
-
-
-def _dask(*arguments: str) -> subprocess.Popen[bytes]:
-    command = [sys.executable, "-m", "distributed.cli.dask_" + arguments[0], *arguments[1:]]
-    return subprocess.Popen(command, env=environment(), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-
-
-def _dask_worker(address: str) -> subprocess.Popen[bytes]:
-    return _dask("worker", address, "--nthreads", "1", "--no-nanny", "--no-dashboard")
-
-
-def _descendants(number: int) -> set[int]:
-    """The processes below one, as Linux lists them."""
-    found: set[int] = set()
-    with contextlib.suppress(OSError):
-        for child in map(int, Path(f"/proc/{number}/task/{number}/children").read_text().split()):
-            found |= {child} | _descendants(child)
-    return found
-
-
 def _await_the_first_line(process: subprocess.Popen[str]) -> None:
     """Wait until the interpreter has started and the first line of the package has run: from then on SIGTERM is in hand."""
     bit = 1 << (signal.SIGTERM - 1)
@@ -315,8 +257,6 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=70)
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--command", choices=list(COMMANDS), action="append", help="only this one; may be given several times")
-    parser.add_argument("--helpers", choices=("pool", "cluster"), help="kill helpers of a study instead of commands")
-    parser.add_argument("--study", choices=tuple(HELPED), default="sweep", help="which study (default %(default)s)")
     args = parser.parse_args()
     which = getattr(signal, f"SIG{args.signal}")
     signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell may have switched it off for what runs behind
@@ -326,23 +266,6 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as parent:
         made, place = Path(parent) / "made", Path(parent) / "place"
         made.mkdir()
-        if args.helpers:
-            desk(place := Path(parent) / "undisturbed")
-            for _ in range(2):  # the first one may compile
-                started = time.perf_counter()
-                done = studied(place, [*HELPED[args.study], "--workers", "2", "--force"])
-                if done.returncode != 0:
-                    raise SystemExit(done.stderr)
-            usual_time, undisturbed = time.perf_counter() - started, outcome(place / "study")
-            print(f"usual: {usual_time:.1f} s", flush=True)
-            for number in range(args.first, args.first + args.count):
-                folder = Path(parent) / "place"
-                name, status, wrong = helped(number, args.helpers, HELPED[args.study], folder, usual_time, undisturbed)
-                ended[status] += 1
-                if wrong:
-                    wrong_rounds += 1
-                    print(f"{number} ({name}): {wrong}", flush=True)
-            _report(args, wrong_rounds, ended, begun)
         subprocess.run(
             [sys.executable, "-m", "watchsim", "run", LEVER, "--duration", "0.2 s", "-o", "old"],
             cwd=made, env=environment(), check=True, capture_output=True,
@@ -350,9 +273,8 @@ def main() -> None:
         (made / "old" / "mine.txt").write_text("mine")
         names = args.command or list(COMMANDS)
         load({name: COMMANDS[name] for name in names if name not in ALONE}, made, place)
-        kinds = [(name, fresh) for name in names for fresh in (True, False) if fresh or name not in ALONE] + [(DEMO, False)] * (
-            names == list(COMMANDS)
-        )
+        kinds = [(name, fresh) for name in names for fresh in (True, False) if fresh or name not in ALONE]
+        kinds += [(DEMO, False)] * (names == list(COMMANDS))
         usual = {(name, fresh): _usual(COMMANDS_AND_DEMO[name], fresh, made, place) for name, fresh in kinds}
         print({f"{name}{' fresh' * fresh}": round(seconds, 2) for (name, fresh), seconds in usual.items()}, flush=True)
         for number in range(args.first, args.first + args.count):
@@ -361,10 +283,6 @@ def main() -> None:
             if wrong:
                 wrong_rounds += 1
                 print(f"{number} ({name}): {wrong}", flush=True)
-    _report(args, wrong_rounds, ended, begun)
-
-
-def _report(args: argparse.Namespace, wrong_rounds: int, ended: Counter[str], begun: float) -> NoReturn:
     took = time.perf_counter() - begun
     print(
         f"{args.count} rounds of {args.signal} from number {args.first}: {wrong_rounds} wrong; "

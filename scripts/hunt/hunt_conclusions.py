@@ -15,8 +15,6 @@ scale     the same summary in other units of length and time, but where the moti
 Ctrl-C and SIGTERM end it with the table of what was judged so far. Exit status: 0 all fine, 1 something was wrong.
 """
 
-from __future__ import annotations
-
 import argparse
 import math
 import signal

@@ -12,8 +12,6 @@ Ctrl-C and SIGTERM end the hunt with the table of what it has judged so far.
 Exit status: 0 all fine, 1 something was wrong, hung or gave up.
 """
 
-from __future__ import annotations
-
 import argparse
 import re
 import signal
@@ -28,7 +26,7 @@ from typing import Any
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from hunt.generator.generate import FAMILIES, mechanism
+from hunt.generate import FAMILIES, mechanism
 from hunt.judge import Verdict, judged
 from hunt.pool import answers
 from hunt.write import write_scene

@@ -8,11 +8,9 @@
    motion is compared until it has forgotten its start, and where a law is discontinuous (simultaneous impacts, grazes,
    sticking) the twins fall into its branches and vouch for them. A twin that breaks the books vouches for nothing, and makes
    the mechanism wrong. Nor is a disagreement wrong that has only grown: what the runs do otherwise piece by piece
-   (`hunt.pieces`) then explains next to nothing of it.
+   (`hunt.views.made`) then explains next to nothing of it.
 3. *Witness.* Moreau's time stepping, for a share of the mechanisms (`hunt.witness`).
 """
-
-from __future__ import annotations
 
 import math
 import time
@@ -24,10 +22,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hunt.books import faults
-from hunt.generator.material import Material, reach
-from hunt.grazes import grazed
-from hunt.pieces import made
-from hunt.views import View, perturbed, views
+from hunt.open_motion import grazed
+from hunt.parts import Material, reach
+from hunt.views import View, made, perturbed, views
 from hunt.witness import witness_fault
 from watchsim.scene.errors import SceneError
 from watchsim.scene.scene import Scene

@@ -4,8 +4,6 @@ Number k of a seed is the same on every machine: a profile that swings with othe
 starts; perhaps behind pairs of real gears, perhaps with a second one beside it.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -3,8 +3,6 @@
 Compiled code cannot be interrupted from within; a worker that does not answer is killed, its mechanism counts as hanging.
 """
 
-from __future__ import annotations
-
 import multiprocessing
 import signal
 import time

@@ -4,8 +4,6 @@ In SI units with all digits, so that it reads back to the same motion. What is n
 drawing beside the scene.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

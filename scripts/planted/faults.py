@@ -4,8 +4,6 @@ One at a time: a comparison turned round, an operator or function exchanged for 
 steers no computation is not changed: texts, annotations, imports, default documentation.
 """
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Iterator
 from dataclasses import dataclass

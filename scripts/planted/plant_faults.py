@@ -18,8 +18,6 @@ What no test notices is listed; what was judged harmless stands in docs/reports/
 Ends with 1 where fewer than 95 % of all others were noticed.
 """
 
-from __future__ import annotations
-
 import argparse
 import csv
 import json
@@ -35,11 +33,9 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from areas import AREAS, COMPILED, PLAIN
 from compiled_copy import CompiledCopy
 from faults import Fault, faults
-from named_functions import function_of
-from reached import Reached, kept, recorded
+from reached import Reached, function_of, kept, recorded
 from run_in_a_copy import fails, load
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -53,6 +49,47 @@ LONGEST_PLAIN = 3.0  # s for one test of kernels in plain Python, a hundred time
 REST = 300.0  # s of all other tests, for one fault that these miss
 AT_ONCE, BY_THE_REST, MISSED, HARMLESS = "at once", "rest", "missed", "judged"  # what became of a fault
 Harmless = dict[tuple[str, str, str], set[str]]  # (file, before, after) -> lines of code in which that is so; "": in all
+RECORDS = "tests/records"
+QUOTED = "tests/docs/test_quoted_constants.py"
+COMPILED = "kernels"
+PLAIN = "plain"
+KERNELS = (
+    ("dynamics/**/*.py", "contact/*.py", "simulation/**/*.py", "tolerances.py"),
+    ("tests/dynamics", "tests/candidates", "tests/contact", "tests/simulation", QUOTED),
+)
+AREAS = {  # name -> (files, tests)
+    "reader": (("drawing/**/*.py",), ("tests/drawing", "tests/construction", RECORDS)),
+    "geometry": (
+        ("geometry/**/*.py",),
+        (
+            *("tests/geometry", RECORDS, "tests/drawing/test_chaining.py", "tests/drawing/test_ellipses_and_splines.py"),
+            *("tests/drawing/test_profile.py", "tests/render/test_solids_for_others.py"),
+        ),
+    ),
+    "scene": (
+        ("scene/**/*.py", "mechanism/*.py", "units.py"),
+        (
+            *("tests/scene", "tests/mechanism", "tests/designs", "tests/test_units.py"),
+            *("tests/simulation/test_bound_bodies.py", RECORDS),
+        ),
+    ),
+    "analysis": (
+        ("analysis/**/*.py", "results/*.py", "verification/**/*.py"),
+        ("tests/analysis", "tests/results", "tests/verification", "tests/render/test_curves_and_colours.py", RECORDS),
+    ),
+    "pictures": (
+        (
+            *("render/movie.py", "render/view.py", "render/phase_plots.py", "render/marks.py", "render/encoder.py"),
+            *("render/keyframes.py", "render/rows.py"),
+        ),
+        ("tests/render", RECORDS),
+    ),
+    "studies": (
+        ("studies/*.py", "escapement/*.py", "construction/*.py"),
+        ("tests/studies", "tests/escapement", "tests/construction", "tests/turning", "tests/proposal", RECORDS),
+    ),
+    **dict.fromkeys((PLAIN, COMPILED), KERNELS),
+}
 
 
 @dataclass(frozen=True)

@@ -3,8 +3,6 @@
 In a copy of a process that has loaded everything but the package; the faulty text stands in for the file as it is imported.
 """
 
-from __future__ import annotations
-
 import contextlib
 import importlib.machinery
 import importlib.util

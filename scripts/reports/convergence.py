@@ -6,8 +6,6 @@ The incline is measured against its closed form, the others against the event-dr
 The exit status is 1 where an error hardly falls with the step.
 """
 
-from __future__ import annotations
-
 import argparse
 import dataclasses
 import math

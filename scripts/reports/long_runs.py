@@ -6,8 +6,6 @@ Every hour is run in pieces of a minute, each taken up from the saved state of t
 one piece, of which only statistics are kept. Writes docs/reports/long-runs.md and docs/images/long_runs.png.
 """
 
-from __future__ import annotations
-
 import argparse
 import dataclasses
 import os

@@ -5,8 +5,6 @@
 Writes the tables into the document, between the comments that name them.
 """
 
-from __future__ import annotations
-
 import math
 import sys
 from collections.abc import Callable, Iterable

@@ -3,8 +3,6 @@
 One small table beside the page, docs/reports/NAME.csv, in the digits that were measured.
 """
 
-from __future__ import annotations
-
 import csv
 from collections.abc import Iterable, Mapping
 from pathlib import Path

@@ -5,8 +5,6 @@
 Prints the figures of docs/reports/measured_clocks.md; tests/analysis/test_measured_clocks.py asks for the same.
 """
 
-from __future__ import annotations
-
 import argparse
 import math
 from dataclasses import replace

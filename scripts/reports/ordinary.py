@@ -6,8 +6,6 @@ Parts: kinks, orientations, gears, cams. With --only the other parts of the page
 The exit status is 1 where a run was wrong.
 """
 
-from __future__ import annotations
-
 import argparse
 import math
 import sys

@@ -3,8 +3,6 @@
 Writes the table of docs/reports/proposals.md (default), or of `--page FILE`; takes some minutes.
 """
 
-from __future__ import annotations
-
 import argparse
 import math
 import re

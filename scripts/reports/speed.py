@@ -7,8 +7,6 @@ page says if there was something else. `--from` takes the results of an earlier 
 the whole command takes.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import math

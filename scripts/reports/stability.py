@@ -7,8 +7,6 @@
 of its energy or gained some. `page` writes docs/reports/stability.md with its pictures from that table and `watchsim verify`.
 """
 
-from __future__ import annotations
-
 import argparse
 import csv
 import dataclasses

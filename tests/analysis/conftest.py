@@ -1,7 +1,5 @@
 """Which simulations do several tests look at?"""
 
-from __future__ import annotations
-
 import pytest
 
 from watchsim.paths import profiles_dir

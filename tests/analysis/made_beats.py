@@ -3,8 +3,6 @@
 Hand-made runs: nothing is simulated, every row and event follows from a formula.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import replace

@@ -3,8 +3,6 @@
 All are made from the Swiss lever profile; `turned_over` and `renamed` change what no verdict may depend on.
 """
 
-from __future__ import annotations
-
 import functools
 import math
 from collections.abc import Callable, Mapping

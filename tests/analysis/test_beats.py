@@ -1,7 +1,5 @@
 """Are amplitude, rate and beat error those of motions that are known exactly?"""
 
-from __future__ import annotations
-
 import json
 import math
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Is what is concluded from a run the same whatever is recorded of it, and whatever train drives the escape wheel?"""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

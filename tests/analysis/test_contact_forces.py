@@ -1,7 +1,5 @@
 """Are forces at contacts and pivots those of statics and dynamics on paper?"""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from pathlib import Path

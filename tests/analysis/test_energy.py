@@ -1,7 +1,5 @@
 """Are work, losses and efficiency the integrals of their powers, whatever forces act?"""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Are teeth and missed beats counted, and is it said why a run gives no rate?"""
 
-from __future__ import annotations
-
 import math
 import re
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Is what a scene promises judged in its own units, and are slips reported before a run?"""
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Callable
 from pathlib import Path

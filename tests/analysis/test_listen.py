@@ -1,7 +1,5 @@
 """Does the detector hear what a clock does: against the run that made the sound, sounds made here, and a detector made here?"""
 
-from __future__ import annotations
-
 import json
 import math
 import struct

@@ -1,7 +1,5 @@
 """Do the figures that docs/reports/measured_clocks.md states come out, and do they follow from closed forms?"""
 
-from __future__ import annotations
-
 import importlib.util
 import math
 from pathlib import Path

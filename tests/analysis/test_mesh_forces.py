@@ -1,7 +1,5 @@
 """Are the loads of bearings between gears those of statics on paper, and the active sets those of scipy?"""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 from types import SimpleNamespace

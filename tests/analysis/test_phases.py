@@ -1,7 +1,5 @@
 """Are the phases of a beat those that were put into it, and those of an anchor those of its drawing?"""
 
-from __future__ import annotations
-
 import csv
 import math
 from dataclasses import replace

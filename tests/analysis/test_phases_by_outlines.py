@@ -1,7 +1,5 @@
 """Are the phases those that the drawn outlines and other engines show?"""
 
-from __future__ import annotations
-
 import functools
 import json
 import math

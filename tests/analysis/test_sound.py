@@ -1,7 +1,5 @@
 """Does the WAV file sound as the watch ticks?"""
 
-from __future__ import annotations
-
 import math
 import wave
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Does the summary hold every promised number, with its errors and doubts, in a watchmaker's words?"""
 
-from __future__ import annotations
-
 import json
 import math
 from dataclasses import replace

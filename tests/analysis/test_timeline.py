@@ -1,7 +1,5 @@
 """Do the books of every phase close, and do its times agree with what the events say?"""
 
-from __future__ import annotations
-
 import csv
 import math
 from dataclasses import replace

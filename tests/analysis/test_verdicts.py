@@ -1,7 +1,5 @@
 """Is a watch that fails told from one that ticks, and is it said how it fails?"""
 
-from __future__ import annotations
-
 import cmath
 import math
 import re

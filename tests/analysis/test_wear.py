@@ -1,7 +1,5 @@
 """Are distance, work of friction and N s of what slides those of closed forms, and do they add up to the ledger of a run?"""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

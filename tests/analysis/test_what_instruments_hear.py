@@ -1,7 +1,5 @@
 """What do timing machines make of our sound: one that finds the first noise of a beat, and one that waits for a loud one?"""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

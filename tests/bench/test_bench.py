@@ -1,7 +1,5 @@
 """Is the comparison of engines fair, and are whole runs timed?"""
 
-from __future__ import annotations
-
 import dataclasses
 import json
 import math

@@ -1,7 +1,5 @@
 """Are cells small steps in the right frame, with keys of their own, and are symmetries found where they are?"""
 
-from __future__ import annotations
-
 import math
 from itertools import pairwise
 from typing import Any

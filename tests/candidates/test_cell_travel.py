@@ -1,7 +1,5 @@
 """How far can primitives get within a cell, and which pairs can ever touch? Against dense points."""
 
-from __future__ import annotations
-
 import functools
 import itertools
 import math

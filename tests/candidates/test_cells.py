@@ -1,7 +1,5 @@
 """Does a cell's list hold every pair of primitives that touches anywhere in the cell and its margin?"""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

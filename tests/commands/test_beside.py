@@ -1,7 +1,5 @@
 """Does a run leave the same files with one core and with more, whatever becomes of the copy that draws its plots?"""
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess

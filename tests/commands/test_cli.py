@@ -1,7 +1,5 @@
 """Does the command line keep its names, outputs and exit statuses?"""
 
-from __future__ import annotations
-
 import json
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """Do shells complete commands, and the paths of a scene behind --set?"""
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess

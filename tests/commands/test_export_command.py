@@ -1,7 +1,5 @@
 """Does `watchsim export` write what it says, whole or not at all?"""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Does hostile or hopeless input end in a message, and what is received from others harm nothing?"""
 
-from __future__ import annotations
-
 import csv
 import io
 import json

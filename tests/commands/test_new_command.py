@@ -1,7 +1,5 @@
 """Does `watchsim new` list, refuse and write what it says?"""
 
-from __future__ import annotations
-
 import json
 
 import pytest

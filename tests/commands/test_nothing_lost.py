@@ -1,7 +1,5 @@
 """Is refused at once what cannot be written at the end, and saved elsewhere what cannot be written all the same?"""
 
-from __future__ import annotations
-
 import dataclasses
 import errno
 import io

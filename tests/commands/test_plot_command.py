@@ -1,7 +1,5 @@
 """Does watchsim plot write the kinds of plots that were asked for, and say why one cannot be drawn?"""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import imageio.v3 as iio

@@ -1,7 +1,5 @@
 """Does a results folder hold all that it needs, wherever it goes and whatever becomes of the drawings?"""
 
-from __future__ import annotations
-
 import shutil
 from pathlib import Path
 

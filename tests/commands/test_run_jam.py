@@ -1,7 +1,5 @@
 """Does a run that ends in a jam say so, with status 3, and no fault of the program behind it?"""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """Does `--profile` say where the time went, in words and in summary.json?"""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Does the command line choose what is kept, and do the numbers stay?"""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

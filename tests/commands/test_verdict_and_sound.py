@@ -1,7 +1,5 @@
 """Does the command line say when a watch does not work, and let it be heard?"""
 
-from __future__ import annotations
-
 import json
 import wave
 from pathlib import Path

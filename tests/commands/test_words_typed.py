@@ -1,7 +1,5 @@
 """What is answered to a command or an option that there is not?"""
 
-from __future__ import annotations
-
 import argparse
 import importlib
 import io
@@ -91,9 +89,12 @@ def test_a_folder_with_a_scene_is_told_from_results(tmp_path: Path, capsys: pyte
     assert f"missing. It holds a scene: watchsim run {tmp_path} makes results of it" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("value", ["-1.5", "-30°", "- 3", "-1 s:2 s", "a=-b", "-", "--", "-.5 mm"])
+@pytest.mark.parametrize("value", ["-1.5", "-30°", "- 3", "-1 s:2 s", "a=-b", "-", "-.5 mm"])
 def test_values_are_no_options(value: str) -> None:
-    CommandParser()._check(value)
+    parser = CommandParser()
+    parser.add_argument("--window")
+    parser.add_argument("changes", nargs="*")
+    assert vars(parser.parse_args([value, "--window", value])) == {"window": value, "changes": [value]}
 
 
 SENTENCE = "  verdict      not settled yet: the amplitude rises by 0.21° per second, on its way to about 279°"

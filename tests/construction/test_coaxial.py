@@ -1,7 +1,5 @@
 """Is a co-axial escapement drawn as its dimensions say, and does it run?"""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

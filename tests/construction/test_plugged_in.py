@@ -1,7 +1,5 @@
 """Does the design of docs/develop/extend.md, a file of another package, work like one of ours?"""
 
-from __future__ import annotations
-
 import json
 import math
 import re

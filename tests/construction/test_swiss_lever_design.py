@@ -3,8 +3,6 @@
 What is drawn is measured with shapely, which shares nothing with the drawing.
 """
 
-from __future__ import annotations
-
 import cmath
 import math
 import random

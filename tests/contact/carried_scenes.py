@@ -1,7 +1,5 @@
 """Which pairs of bodies hang on carriers, and where are they by the rules of the scene file?"""
 
-from __future__ import annotations
-
 import functools
 import math
 from collections.abc import Callable

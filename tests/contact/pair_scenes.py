@@ -3,8 +3,6 @@
 The outlines are a metre across, so that all numbers are of order one.
 """
 
-from __future__ import annotations
-
 import functools
 import math
 

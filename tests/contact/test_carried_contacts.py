@@ -1,7 +1,5 @@
 """Are gaps, rates, force directions, bar terms and candidates right where bodies are carried by others?"""
 
-from __future__ import annotations
-
 import dataclasses
 import functools
 import math

@@ -1,7 +1,5 @@
 """How far are two edges from each other? Points by complex numbers, distances by trying all along one of the two."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Do distances and gaps agree with fifty-digit arithmetic and with the drawn material?"""
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from collections.abc import Iterator

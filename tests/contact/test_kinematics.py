@@ -1,7 +1,5 @@
 """Are gaps, rates, force directions and bar terms what difference quotients and brute-force distances say?"""
 
-from __future__ import annotations
-
 import itertools
 import math
 from typing import Any

@@ -4,8 +4,6 @@ A pair is a contact where the circle's surface lies on the other primitive, insi
 and within the fans of their normals.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """What does a scene say that is made from a design, and does it stay what it is in a results folder?"""
 
-from __future__ import annotations
-
 import math
 
 import pytest

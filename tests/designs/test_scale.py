@@ -4,8 +4,6 @@ Masses, springs and torques do not decide what is drawn, and angles stay. A cons
 which is divided where it should multiply, shows in any outline that does not grow.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -3,8 +3,6 @@
 But for `live`, which serves, and tolerances, which take hours.
 """
 
-from __future__ import annotations
-
 import re
 import shlex
 import shutil

@@ -1,7 +1,6 @@
 """Are the commands, scenes and Python of the pages such as the program takes? Tutorials run: tests/tutorials."""
 
-from __future__ import annotations
-
+import ast
 import re
 import shlex
 import textwrap
@@ -60,7 +59,7 @@ PYTHON = [(page, text) for page, language, text in BLOCKS if language == "python
 
 @pytest.mark.parametrize(("page", "text"), PYTHON, ids=[page for page, _ in PYTHON])
 def test_python_is_python(page: str, text: str) -> None:
-    compile(text, page, "exec")
+    assert ast.parse(text, page).body
 
 
 @pytest.mark.slow

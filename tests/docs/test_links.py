@@ -1,7 +1,5 @@
 """Do the links of the pages lead somewhere, and are the pages whole?"""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

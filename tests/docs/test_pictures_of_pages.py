@@ -1,7 +1,5 @@
 """Are the words in the pictures of the pages those of today, and is every picture made by a script?"""
 
-from __future__ import annotations
-
 import ast
 import json
 import re

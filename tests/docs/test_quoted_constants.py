@@ -4,8 +4,6 @@ Each entry holds the page's words with {} in the place of the number, and what t
 without the number fails as well: then the entry goes, or the words change here, too.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from pathlib import Path

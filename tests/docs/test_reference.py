@@ -1,7 +1,5 @@
 """Is the reference made from the docstrings as they are, and does every public name say what it is?"""
 
-from __future__ import annotations
-
 import inspect
 import re
 import sys

@@ -1,7 +1,5 @@
 """Does the contents of the site, which follows from the lists of the sections' first pages, hold every page once?"""
 
-from __future__ import annotations
-
 import importlib.util
 from collections import Counter
 from pathlib import Path

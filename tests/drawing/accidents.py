@@ -1,7 +1,5 @@
 """What happens to a text file on its way, whatever its format?"""
 
-from __future__ import annotations
-
 import random
 from collections.abc import Callable, Sequence
 

@@ -1,7 +1,5 @@
 """How do tests read a drawing that they have just written?"""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """How is a small DXF file written by hand, tag by tag, good or broken?"""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 Tag = tuple[int, object]

@@ -1,7 +1,5 @@
 """Was a damaged drawing read as it must be: no exception, and nothing missing in silence?"""
 
-from __future__ import annotations
-
 import json
 import traceback
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Random closed outlines of lines and arcs for the tests of writing and reading."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

@@ -3,8 +3,6 @@
 One accident per file: bytes, numbers, group codes, lines, the nesting of blocks, or the end of the file.
 """
 
-from __future__ import annotations
-
 import random
 from itertools import pairwise
 from pathlib import Path

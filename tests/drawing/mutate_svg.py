@@ -3,8 +3,6 @@
 One accident per file: bytes, numbers, names, letters of paths, lines, the nesting of elements, or the end of the file.
 """
 
-from __future__ import annotations
-
 import random
 import re
 import sys

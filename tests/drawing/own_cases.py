@@ -1,7 +1,5 @@
 """Which outlines do drawings of our own hold, counted and measured by ezdxf and by closed forms?"""
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from pathlib import Path

@@ -4,8 +4,6 @@ Points are summed up from the definitions: entities sampled in their own plane, 
 stand in. Shares no code with the package.
 """
 
-from __future__ import annotations
-
 import math
 import random
 from collections.abc import Callable, Sequence

@@ -4,8 +4,6 @@ The truth lists what the file draws: doubles are kept, and what hangs on a branc
 drawn are also chained by the plainest rule, without gaps closed or doubles taken out.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import sys

@@ -1,7 +1,5 @@
 """Are two sets of outlines the same to 1e-12: loop by loop, edge by edge, and in area and moment?"""
 
-from __future__ import annotations
-
 import math
 
 import pytest

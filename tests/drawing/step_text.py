@@ -1,7 +1,5 @@
 """A plate as a STEP file (ISO 10303-21, AP 214): planes and cylinders, exact, as a CAD program writes it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 from watchsim.geometry.loops import Loop

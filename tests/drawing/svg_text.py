@@ -1,7 +1,5 @@
 """How does a small SVG file look?"""
 
-from __future__ import annotations
-
 import numpy as np
 
 from watchsim.drawing.drawing import Drawing

@@ -1,7 +1,5 @@
 """What becomes of Béziers in a row: lines, splines that run through, circles, and nothing else?"""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from itertools import pairwise

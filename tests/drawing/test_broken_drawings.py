@@ -1,7 +1,5 @@
 """Does a broken file give findings, never a traceback and never a drawing with something missing in silence?"""
 
-from __future__ import annotations
-
 import gzip
 import io
 import random

@@ -1,7 +1,5 @@
 """Do edges find each other, and is everything that is wrong with an outline named?"""
 
-from __future__ import annotations
-
 import math
 import random
 import sys

@@ -1,7 +1,5 @@
 """Does every kind of entity become the lines and arcs it draws?"""
 
-from __future__ import annotations
-
 import math
 import random
 from collections.abc import Callable

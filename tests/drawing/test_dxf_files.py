@@ -1,7 +1,5 @@
 """Is one drawing the same in every version of the format, as text and binary, written and measured by ezdxf?"""
 
-from __future__ import annotations
-
 import io
 import math
 import os

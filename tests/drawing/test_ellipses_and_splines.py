@@ -1,7 +1,5 @@
 """Are ellipses cut at the ends of their axes, splines at their corners, and do made-up knots draw what was meant?"""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from itertools import pairwise

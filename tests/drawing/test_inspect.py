@@ -1,7 +1,5 @@
 """Does the report use the fixed names, and does the text say what matters?"""
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """Does the reader say of everything that it left out how much of it there was, whether it matters, and why?"""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import dxf_text as d

@@ -1,7 +1,5 @@
 """Is every crossing of outlines found with its place, and no touch taken for one?"""
 
-from __future__ import annotations
-
 import math
 import random
 import tracemalloc

@@ -2,8 +2,6 @@
 in those of strangers: closed layers, units, counts, teeth, the same matter in DXF and SVG, in a single
 part and in the assembly?"""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Is the real watch-size lever read layer by layer as its authors describe it?"""
 
-from __future__ import annotations
-
 import json
 import math
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Do lines and arcs survive the way to trimesh and back?"""
 
-from __future__ import annotations
-
 import cmath
 import math
 import random

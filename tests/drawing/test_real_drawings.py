@@ -4,8 +4,6 @@ Every file is compared twice: what was drawn, chained by the plainest rule; and 
 differ.
 """
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from typing import Any

@@ -1,7 +1,5 @@
 """Solids as drawings: what was exported is cut, read and compared with the outlines that it was made of."""
 
-from __future__ import annotations
-
 import json
 import re
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Do SVG elements draw what SVG says: shapes, transformations, view boxes, what is used again and what is hidden?"""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 

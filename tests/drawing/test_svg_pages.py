@@ -1,7 +1,5 @@
 """Which unit does an SVG drawing have, and on which layers does it lie?"""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import pytest

@@ -1,7 +1,5 @@
 """Does a path draw what its definition says, however it is written?"""
 
-from __future__ import annotations
-
 import math
 import re
 import xml.etree.ElementTree as ET

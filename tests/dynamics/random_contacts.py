@@ -1,7 +1,5 @@
 """Which contacts can be made up at random, without any geometry?"""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

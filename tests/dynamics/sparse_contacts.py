@@ -1,7 +1,5 @@
 """Which contacts act on a few of all coordinates, in any order, as those of bodies do?"""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import numpy as np

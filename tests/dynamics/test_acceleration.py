@@ -1,7 +1,5 @@
 """Does the acceleration-level problem decide roll, slip and detachment as mechanics and trying all modes do?"""
 
-from __future__ import annotations
-
 import itertools
 import math
 

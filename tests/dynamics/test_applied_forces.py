@@ -1,7 +1,5 @@
 """Do springs between points and repeated torques push every coordinate as their length and table say?"""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from types import SimpleNamespace

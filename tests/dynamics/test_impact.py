@@ -1,7 +1,5 @@
 """Is an impact what the laws of Poisson and Coulomb and their tangential variants say?"""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from every_time import few

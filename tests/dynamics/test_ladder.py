@@ -1,7 +1,5 @@
 """Is each rung of the ladder right by itself, and do the problems say the law of each friction force?"""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from types import SimpleNamespace

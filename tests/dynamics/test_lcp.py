@@ -1,7 +1,5 @@
 """Does the complementarity solver find what all complementary bases, tried one by one, say there is?"""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from types import SimpleNamespace
 

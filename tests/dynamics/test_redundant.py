@@ -1,7 +1,5 @@
 """Are accelerations right and forces the smallest possible where contacts are redundant?"""
 
-from __future__ import annotations
-
 import itertools
 from types import SimpleNamespace
 

@@ -1,7 +1,5 @@
 """The drawings' scripts, by which scenes of chosen dimensions are drawn."""
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Scenes of escapements in which every dimension was chosen, and copies that stand and turn otherwise."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from pathlib import Path

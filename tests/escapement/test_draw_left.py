@@ -1,7 +1,5 @@
 """Is the lever drawn to its bank as long as friction in face and pivot leaves draw, and not beyond?"""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

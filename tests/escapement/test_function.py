@@ -1,7 +1,5 @@
 """Is the geometry of function that of the drawing and its construction, however the parts are called and stand?"""
 
-from __future__ import annotations
-
 import functools
 import math
 import random

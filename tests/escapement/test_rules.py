@@ -1,7 +1,5 @@
 """Which of the watchmaker's rules does a drawing break, and is each said with its value and source?"""
 
-from __future__ import annotations
-
 import json
 import math
 import re

@@ -1,7 +1,5 @@
 """Which curves can arcs be tried on? Rational ones, and others by high polynomials; with points and slopes by other means."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

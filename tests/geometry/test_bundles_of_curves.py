@@ -1,7 +1,5 @@
 """Are places, points and slopes of many curves at once those of each, and is no arc further away than its bound says?"""
 
-from __future__ import annotations
-
 import math
 from itertools import pairwise
 

@@ -1,7 +1,5 @@
 """Do arcs follow curves within the tolerance, smoothly, and with nearly the fewest arcs possible?"""
 
-from __future__ import annotations
-
 import math
 from itertools import pairwise
 

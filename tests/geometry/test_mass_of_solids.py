@@ -1,7 +1,5 @@
 """Are area, centroid and inertia those of the closed forms, and do they move as they must?"""
 
-from __future__ import annotations
-
 import math
 from itertools import pairwise
 from pathlib import Path

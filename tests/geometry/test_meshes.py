@@ -1,7 +1,5 @@
 """Where do meshes stand, what is written of them, and which points stand for arcs?"""
 
-from __future__ import annotations
-
 import io
 import json
 import math

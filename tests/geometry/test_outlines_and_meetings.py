@@ -1,7 +1,5 @@
 """Where do single lines and arcs meet, how near is near, and what lies inside?"""
 
-from __future__ import annotations
-
 import cmath
 import math
 import random

@@ -1,7 +1,5 @@
 """Puts `scripts` on the path, where the hunt lives; its tests import this first."""
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Does the judge tell a wrong motion from a right one, and one that cannot be known better?"""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -10,20 +8,14 @@ import numpy as np
 import pytest
 from every_time import few
 from hunt import witness
-from hunt.books import faults, potential, pulls
-from hunt.energies import masses
-from hunt.generator.generate import mechanism
-from hunt.generator.material import Material
-from hunt.generator.parts import GRAVITY, fixed, free, pivoted, sliding
-from hunt.generator.shapes import box, circle
-from hunt.grazes import grazed
+from hunt.books import Touches, faults, masses, potential, pulls, touching
+from hunt.generate import mechanism
 from hunt.hunt_mechanisms import judged_file
-from hunt.impulses import Touches, touching
 from hunt.judge import Judge, judged, merged
-from hunt.open_motion import open_accelerations, open_motion
-from hunt.pieces import made, resumed
+from hunt.open_motion import grazed, open_accelerations, open_motion
+from hunt.parts import GRAVITY, Material, box, circle, fixed, free, pivoted, sliding
 from hunt.pool import answers
-from hunt.views import views
+from hunt.views import made, resumed, views
 
 from watchsim.geometry.primitives import Arc, Line
 from watchsim.scene.forces import Contact, Side, Spring, Torque

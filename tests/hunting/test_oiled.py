@@ -1,13 +1,11 @@
 """Do mechanisms with loaded or loose pivots that the hunt found wrong come to their end now?"""
 
-from __future__ import annotations
-
 import sys
 
 import hunt_path
 import pytest
-from hunt.generator.generate import mechanism
-from hunt.generator.parts import Dice
+from hunt.generate import mechanism
+from hunt.parts import Dice
 
 sys.path.insert(0, str(hunt_path.ROOT / "scripts" / "fuzz"))
 

@@ -1,7 +1,5 @@
 """Is what was once concluded wrongly of a random mechanism with an oscillator concluded rightly now?"""
 
-from __future__ import annotations
-
 import hunt_path  # noqa: F401
 import pytest
 from every_time import few

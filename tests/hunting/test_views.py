@@ -1,7 +1,5 @@
 """Is a mechanism that is turned, mirrored and drawn otherwise the same one, and does it stop where friction locks it?"""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -9,9 +7,9 @@ import hunt_path
 import numpy as np
 import pytest
 from every_time import few
-from hunt.energies import masses
-from hunt.generator.generate import FAMILIES, mechanism
-from hunt.generator.material import Material, apart, start_pose
+from hunt.books import masses
+from hunt.generate import FAMILIES, mechanism
+from hunt.parts import Material, apart, start_pose
 from hunt.views import View, perturbed, views
 from hunt.write import write_scene
 

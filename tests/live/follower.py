@@ -1,7 +1,5 @@
 """watchsim live as a process, and what its page would hear."""
 
-from __future__ import annotations
-
 import http.client
 import json
 import shutil

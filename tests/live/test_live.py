@@ -1,7 +1,5 @@
 """Is every save followed, once, and nobody else served?"""
 
-from __future__ import annotations
-
 import builtins
 import os
 import signal

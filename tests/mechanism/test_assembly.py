@@ -1,7 +1,5 @@
 """Does one drawing serve a whole mechanism, and is a layer that is turned and shifted the same as one edited by hand?"""
 
-from __future__ import annotations
-
 import json
 import math
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Does `watchsim check` echo what the scene amounts to, in the right words and numbers?"""
 
-from __future__ import annotations
-
 import itertools
 import json
 import math

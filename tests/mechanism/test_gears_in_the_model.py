@@ -1,7 +1,5 @@
 """How do geared bodies share a coordinate, and what do racks and planets feel? By virtual work and by hand."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Which coordinates, outlines and contacts does the model get of a scene? By hand and by two loops."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 

@@ -1,7 +1,5 @@
 """Are bodies that stand in each other found, how deep are they, and are bodies that only touch left alone?"""
 
-from __future__ import annotations
-
 import math
 import re
 from dataclasses import replace

@@ -5,8 +5,6 @@ loop where exactly two edges meet everywhere, an open chain where only its two e
 by Green's formula edge by edge, from the origin, gaps left open.
 """
 
-from __future__ import annotations
-
 import math
 from collections import defaultdict
 from collections.abc import Sequence

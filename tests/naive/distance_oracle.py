@@ -4,8 +4,6 @@ Shares nothing with the package but the data classes of lines, arcs and loops, w
 the second order in the sample spacing: about spacing² / (8 radius) at arcs, less than spacing² / (2 gap) at corners passed by.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -4,8 +4,6 @@ By centres, angles and intersections, as in a textbook, in mpmath's arithmetic. 
 classes of lines and arcs, whose fields alone it reads.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from typing import Any, NamedTuple

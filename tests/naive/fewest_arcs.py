@@ -4,8 +4,6 @@ Dynamic programming over a grid of parameters and, at each, a few tangents besid
 of vectors, samples instead of bounds; nothing of the package is used.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np

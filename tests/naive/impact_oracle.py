@@ -3,8 +3,6 @@
 The matrices are those of docs/theory/method.md 2.6, put down block by block.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from naive.lcp_oracle import solutions
 

@@ -3,8 +3,6 @@
 For problems whose coefficients are of order one: the tolerances are absolute there.
 """
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The simplest timing machine: a beat begins where the sound rises above a share of its loudest moment, after silence."""
 
-from __future__ import annotations
-
 import wave
 from pathlib import Path
 

@@ -4,8 +4,6 @@ A circle is rolled step by step to describe the wheel's flank. Every point of it
 at least as far round as the leaf is wide at the point's distance from the pinion's centre; what is furthest on drives.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -3,8 +3,6 @@
 Slow and plain, to check the reader with; shares no code with it.
 """
 
-from __future__ import annotations
-
 import cmath
 import math
 from collections.abc import Sequence

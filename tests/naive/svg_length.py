@@ -4,8 +4,6 @@ Elements as expat reports them, points by `svg_curve`, lengths by chords. Knows 
 units only; whatever else it meets raises an exception. Shares no code with the package.
 """
 
-from __future__ import annotations
-
 import math
 import re
 import xml.etree.ElementTree as ET

@@ -1,7 +1,5 @@
 """Can the brute-force distance be trusted? Shapes whose distance is known."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

@@ -1,7 +1,5 @@
 """How is a cam drawn as arcs or chords, and how far is its motion from that of the curve?"""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

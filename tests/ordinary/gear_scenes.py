@@ -1,7 +1,5 @@
 """How is a pair of involute gears drawn with N arcs a flank, as a CAD program exports it?"""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

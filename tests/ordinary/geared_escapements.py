@@ -1,7 +1,5 @@
 """Escapements driven through real gears: pairs of involute teeth in front of the escape wheel, as in a movement."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Which scenes show what happens at a kink, and how far is a run from what the laws say?"""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """What is a wheel's mean speed over a whole number of teeth?"""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -4,8 +4,6 @@ Lines of centres, kinks, equal masses, faces flat on flat, bodies in a row, axes
 there must not depend on how the mechanism lies in the plane.
 """
 
-from __future__ import annotations
-
 import dataclasses
 import math
 from collections.abc import Callable

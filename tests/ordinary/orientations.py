@@ -1,7 +1,5 @@
 """Does the same mechanism move the same way however it lies in the plane and however its parts are drawn?"""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 

@@ -1,7 +1,5 @@
 """Do gears, cams, kinks and mechanisms in any orientation move as laws and closed forms say?"""
 
-from __future__ import annotations
-
 import itertools
 import math
 

@@ -1,7 +1,5 @@
 """Which browser opens pages in tests? Debian's Chromium, driven by playwright; without them such tests are skipped."""
 
-from __future__ import annotations
-
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager

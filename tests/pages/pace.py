@@ -1,7 +1,5 @@
 """How fast does a page's player draw, and what does that take of a processor?"""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 SIZE = (1280, 720)

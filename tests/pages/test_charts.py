@@ -1,7 +1,5 @@
 """Do the charts of the page measure what they say?"""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

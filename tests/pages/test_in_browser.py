@@ -1,7 +1,5 @@
 """Does the page show in a browser what the run says, without an error, a request, or a barrier?"""
 
-from __future__ import annotations
-
 import base64
 import io
 import itertools

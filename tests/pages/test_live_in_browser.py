@@ -1,7 +1,5 @@
 """Does the page of a live scene follow it in a browser, and keep what whoever looks at it has chosen?"""
 
-from __future__ import annotations
-
 import time
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Do scenes, runs, beats and figures show themselves in a notebook, in a few lines and a small picture?"""
 
-from __future__ import annotations
-
 import base64
 import html
 import io

@@ -1,7 +1,5 @@
 """Is a page whole, closed to the network and to what titles might smuggle in, and does it hold the motion?"""
 
-from __future__ import annotations
-
 import base64
 import dataclasses
 import hashlib

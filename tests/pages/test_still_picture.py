@@ -1,7 +1,5 @@
 """Do the outlines in the rendered SVG frame lie on those of the model?"""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Iterator

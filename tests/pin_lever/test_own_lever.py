@@ -1,7 +1,5 @@
 """Does a lever that we drew jam where its wheel stands too near, and tick where it stands further away than drawn?"""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

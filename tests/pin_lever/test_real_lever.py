@@ -3,8 +3,6 @@
 The drawing is a section of a public CAD model; it is no part of the project.
 """
 
-from __future__ import annotations
-
 import tempfile
 from pathlib import Path
 

@@ -5,8 +5,6 @@ by the turn of the oscillator is the torque on it by the drive, without friction
 over it is the rate. Shares with the simulation only the drawings, as polygons of SPLIT points per arc.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

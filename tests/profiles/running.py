@@ -1,7 +1,5 @@
 """What must be true of every escapement, however long it runs, and what does time stepping say of it?"""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Does a verge tick, and does its period depend on the drive as Hoyng and Nieuwenhuizen (arXiv 1604.06681) found?"""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -5,8 +5,6 @@ wheel's axis, W = atan2(y, x) + asin(play / hypot(x, y)); the speed is its deriv
 slot and takes up the play within the first few degrees, which are left out.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Does every profile keep what it promises, run for five minutes, and close its energy account to 1e-9?"""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """Does a wheel with cycloidal teeth turn its pinion as exact curves do, evenly after the line of centres and not before it?"""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Does the detent escapement tick, one tooth in every other half swing, and does its rate hardly follow the drive?"""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

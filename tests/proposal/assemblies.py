@@ -1,9 +1,9 @@
 """The mechanisms of the profiles, each drawn as a whole in one file, as a designer would send it."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
+
+import ezdxf
 
 from watchsim.drawing.write import dxf_text
 from watchsim.paths import profiles_dir
@@ -40,4 +40,13 @@ def assembly(scene: Scene, path: Path, layers: str = "own", marks: bool = True, 
         if body.motion != "fixed" and marks:
             points.append(("PIVOT", (x, y)))
     path.write_text(dxf_text(loops, points), encoding="utf-8")
+    return path
+
+
+def mirror(path: Path) -> Path:
+    """A drawing seen from behind."""
+    document = ezdxf.readfile(path)
+    for entity in document.modelspace():
+        entity.transform(ezdxf.math.Matrix44.scale(-1.0, 1.0, 1.0))
+    document.saveas(path)
     return path

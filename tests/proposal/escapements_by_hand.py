@@ -1,7 +1,5 @@
 """Anchors, stars and ratchets as strangers draw them: either hand, other teeth, other units, layers in other languages."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from pathlib import Path

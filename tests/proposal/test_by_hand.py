@@ -1,7 +1,5 @@
 """Drawings of strangers run the right way, or a doubt says that they do not."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any
@@ -9,7 +7,7 @@ from typing import Any
 import ezdxf
 import ezdxf.math
 import pytest
-from proposal.assemblies import assembly, scene_of
+from proposal.assemblies import assembly, mirror, scene_of
 from proposal.escapements_by_hand import Anchor, star_and_jumper
 
 from watchsim.cli import main
@@ -134,12 +132,7 @@ def test_other_names_show_none(name: str) -> None:
 def test_a_cylinder_runs_in_a_mirror_too(mirrored: bool, tmp_path: Path) -> None:
     """Its balance was let go on the same side of either one, and a tooth ran past it at first."""
     path = assembly(scene_of("cylinder"), tmp_path / "cylinder.dxf", "body")
-    document = ezdxf.readfile(path)
-    if mirrored:
-        for entity in document.modelspace():
-            entity.transform(ezdxf.math.Matrix44.scale(-1.0, 1.0, 1.0))
-        document.saveas(path)
-    found = tried([path])
+    found = tried([mirror(path) if mirrored else path])
     assert (found.way, found.doubts) == (1 if mirrored else -1, ())
 
 

@@ -1,7 +1,5 @@
 """What cannot be true as proposed is said aloud, and a run of it does not pass for a watch."""
 
-from __future__ import annotations
-
 import json
 import math
 from pathlib import Path
@@ -11,7 +9,7 @@ import ezdxf
 import ezdxf.math
 import pytest
 from escapement.made import one_faced_anchor
-from proposal.assemblies import assembly, scene_of
+from proposal.assemblies import assembly, mirror, scene_of
 
 from watchsim.cli import main
 from watchsim.proposal.propose import propose
@@ -238,12 +236,7 @@ def test_a_graham_drawn_by_hand_ticks_as_proposed(tmp_path: Path, capsys: pytest
 @pytest.mark.parametrize("mirrored", [False, True])
 def test_a_finger_turns_the_way_in_which_it_carries_the_star_on(mirrored: bool, tmp_path: Path) -> None:
     path = assembly(scene_of("jumper"), tmp_path / "a.dxf", "whole")
-    document = ezdxf.readfile(path)
-    if mirrored:
-        for entity in document.modelspace():
-            entity.transform(ezdxf.math.Matrix44.scale(-1.0, 1.0, 1.0))
-        document.saveas(path)
-    found = tried([path])
+    found = tried([mirror(path) if mirrored else path])
     assert found.doubts == ()
     assert f'velocity = "{"" if mirrored else "-"}60 rpm"' in found.files["scene.toml"].decode()
 
@@ -258,12 +251,7 @@ def test_of_a_part_left_out_it_is_said_that_it_may_be_what_should_touch(tmp_path
 def test_where_pins_show_no_direction_both_are_tried(mirrored: bool, tmp_path: Path) -> None:
     """A pin wheel drives its pendulum one way only; in a mirror the other way."""
     path = assembly(scene_of("pin_wheel"), tmp_path / "pins.dxf", "body")
-    document = ezdxf.readfile(path)
-    if mirrored:
-        for entity in document.modelspace():
-            entity.transform(ezdxf.math.Matrix44.scale(-1.0, 1.0, 1.0))
-        document.saveas(path)
-    found = tried([path])
+    found = tried([mirror(path) if mirrored else path])
     assert found.doubts == ()
     (value,) = (guess.value for guess in found.guesses if guess.key == "torques.0.value")
     assert value.startswith('"-') != mirrored

@@ -1,7 +1,5 @@
 """Do drawings of whole mechanisms give the scene that they were drawn from?"""
 
-from __future__ import annotations
-
 import json
 import math
 from pathlib import Path

@@ -3,8 +3,6 @@
 The wheels are drawn here from their number of teeth by seeds, and by programs that know neither arcs nor rotation.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import random

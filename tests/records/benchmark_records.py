@@ -1,7 +1,5 @@
 """What does `watchsim verify` simulate, and which numbers must come out? Nothing is run."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import astuple, fields
 from functools import partial

@@ -3,8 +3,6 @@
 Of an outline are kept its number of edges, length, area, centre and extent; of a change only what it moves.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path

@@ -1,7 +1,5 @@
 """What does `watchsim inspect` say of many drawings, whole and damaged?"""
 
-from __future__ import annotations
-
 import math
 import random
 from collections.abc import Callable, Iterator

@@ -3,8 +3,6 @@
 A line holds what looks the same: how many, how many corners, where from and to, and their mean place (pixels).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any

@@ -1,7 +1,5 @@
 """Which made-up scenes use, between them, every table and most keys and units of a scene file?"""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import dxf_text as d

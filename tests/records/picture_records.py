@@ -3,8 +3,6 @@
 Words stand where their widths place them, which another version of matplotlib may take for others.
 """
 
-from __future__ import annotations
-
 import contextlib
 import functools
 import io

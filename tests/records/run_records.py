@@ -1,7 +1,5 @@
 """Which numbers come of short runs of the library's mechanisms: summary, tables, report, forces, sound, instants of films?"""
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Callable, Iterator
 from functools import partial

@@ -1,7 +1,5 @@
 """What do `watchsim check`, the reader of scenes and the model say of the library and of scenes with many keys?"""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import fields
 from functools import partial

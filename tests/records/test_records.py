@@ -4,8 +4,6 @@ What is kept holds on any machine. Where something moves for a reason, `python s
 rewrites the records. That a number is right is for other tests to say.
 """
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Callable
 from pathlib import Path

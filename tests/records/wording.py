@@ -5,8 +5,6 @@ A record file holds sections, each begun by a line "## name". Numbers agree to a
 All other words agree to the letter.
 """
 
-from __future__ import annotations
-
 import dataclasses
 import difflib
 import math

@@ -1,7 +1,5 @@
 """Where is a block pushed up an incline? It slides up, stops, and stays or slides back."""
 
-from __future__ import annotations
-
 import math
 
 

@@ -5,8 +5,6 @@ a spring. While it stays in contact there is one coordinate, the cam's angle; sc
 Shares nothing with the package. SI units.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

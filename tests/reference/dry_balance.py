@@ -4,8 +4,6 @@ In closed form from knot to knot, stop to stop: shares nothing with watchsim. Be
 the sign s of the velocity; at a stop it stays while |M(t) - k q| <= T.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Sequence

@@ -4,8 +4,6 @@ Released at rest at A: θ = A cn(Ω t, m), Ω² = (k + c A²) / J, m = c A² / (
 *Nonlinear Oscillations*, 1979, section 4.1). A spring that softens has m < 0.
 """
 
-from __future__ import annotations
-
 from mpmath import ellipfun, ellipk, mp, mpf, sqrt
 
 

@@ -4,8 +4,6 @@ The face of the follower stands at the height h(theta), so there is one coordina
 tau - k (h - rest) h'. Nothing of the package is used.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

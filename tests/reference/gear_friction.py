@@ -6,8 +6,6 @@ share of each is not determined (rigid flanks on rigid flanks): the mean speed l
 Nothing of the package is used.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from dataclasses import dataclass

@@ -6,8 +6,6 @@ algebra: with normal impulse m(1+e)v the slip s = x' - R spin drops by at most 3
 Flights shrink by the factor e and end at t1 (1+e)/(1-e); there rolling or sliding begins. Evaluated with mpmath (60 digits).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from mpmath import mp, mpf

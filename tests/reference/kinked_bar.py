@@ -6,8 +6,6 @@ impact is that of a single contact, in closed form; rebounds are flights on para
 on the corner, one equation holds for the contact force. Nothing of the package is used.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 from typing import Any

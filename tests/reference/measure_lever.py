@@ -5,8 +5,6 @@ polygons of shapely, whose chords deviate by less than ten nanometres; millimetr
 moment of outlines by Green's theorem with 30 digits (mpmath).
 """
 
-from __future__ import annotations
-
 import math
 import re
 import sys

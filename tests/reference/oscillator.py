@@ -1,7 +1,5 @@
 """How does a damped oscillator move under a constant torque? Textbook solutions, under-, critically and over-damped."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

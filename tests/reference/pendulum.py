@@ -4,8 +4,6 @@ With k = sin(amplitude / 2) and w = sqrt(m g l / J): sin(angle / 2) = k sn(w t +
 the bottom. An impact there with restitution e turns k into e k; each return to the stop then takes 2 K(k) / w.
 """
 
-from __future__ import annotations
-
 from mpmath import asin, ellipfun, ellipk, mp, mpf, sin
 
 

@@ -1,7 +1,5 @@
 """How does a disc on an incline move that starts with slip? It slides until the slip is gone, then rolls."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

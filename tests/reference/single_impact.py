@@ -6,8 +6,6 @@ bodies approach again.
 Works in any number type: floats, or mpmath numbers where all digits matter.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 

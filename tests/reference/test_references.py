@@ -1,7 +1,5 @@
 """Do the closed forms solve the equations they claim to solve? Checked by integrating those equations."""
 
-from __future__ import annotations
-
 import math
 from itertools import pairwise
 

@@ -5,8 +5,6 @@ turns it level, and a level line. Energy gives the speed everywhere and geometry
 so everything is given as a function of place.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

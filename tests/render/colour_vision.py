@@ -4,8 +4,6 @@ Dichromats by the matrices of Machado, Oliveira and Fernandes (IEEE TVCG 15, 200
 is the distance in CIELAB (CIE 1976, D65), of which 2.3 is just noticed.
 """
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Iterable
 

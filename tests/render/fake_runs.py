@@ -1,7 +1,5 @@
 """Which motions are known exactly, so that pictures of them can be checked?"""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

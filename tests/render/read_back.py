@@ -1,7 +1,5 @@
 """What does a figure show, read back from what was drawn: text boxes, curves in SVG, areas?"""
 
-from __future__ import annotations
-
 import io
 import re
 from itertools import combinations

@@ -1,7 +1,5 @@
 """Does a card show the run, at the size that sites show, and is it refused where it cannot be made?"""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import imageio.v3 as imageio

@@ -1,7 +1,5 @@
 """Does a thinned curve look like the whole one, and does every spike survive?"""
 
-from __future__ import annotations
-
 import io
 import itertools
 import math

@@ -1,7 +1,5 @@
 """Does the encoder get every byte of every frame, and is it noticed however it fails?"""
 
-from __future__ import annotations
-
 import sys
 from itertools import pairwise
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Do the plots of a beat show what the run and its tables hold?"""
 
-from __future__ import annotations
-
 import csv
 import dataclasses
 import io

@@ -1,7 +1,5 @@
 """Does a movie show the run, at the speed it says, and is it written whole or not at all?"""
 
-from __future__ import annotations
-
 import math
 import subprocess
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Do names stand apart, with lines that end on their parts, and does a picture show what touches?"""
 
-from __future__ import annotations
-
 import math
 from functools import cache
 from itertools import combinations

@@ -1,7 +1,5 @@
 """On which side of each limit do pictures choose which words, times and rows?"""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from pathlib import Path

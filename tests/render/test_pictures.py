@@ -1,7 +1,5 @@
 """Does the picture of a drawing show its parts and its faults, and is it written whole or not at all?"""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from pathlib import Path

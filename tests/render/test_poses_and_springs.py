@@ -1,7 +1,5 @@
 """Are bodies where the exact motion says they are?"""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Does a GLB file move as the run does, and are STL files closed?"""
 
-from __future__ import annotations
-
 import json
 import math
 import struct

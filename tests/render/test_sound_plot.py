@@ -1,7 +1,5 @@
 """Does the sound that is drawn agree with the WAV file, and are its noises named by what met?"""
 
-from __future__ import annotations
-
 import wave
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Does the picture of wear colour what slides, by as much as it wears, where it lies?"""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

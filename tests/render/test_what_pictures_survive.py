@@ -1,7 +1,5 @@
 """Is an old movie left as it was where the new one cannot be written, and is a picture made of the longest words?"""
 
-from __future__ import annotations
-
 import os
 import stat
 import time

@@ -1,7 +1,5 @@
 """Is a results folder complete, readable, and never half written?"""
 
-from __future__ import annotations
-
 import csv
 import dataclasses
 import errno

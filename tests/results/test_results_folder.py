@@ -1,7 +1,5 @@
 """Which folders may be written to, which files in them are ours, and what goes into them?"""
 
-from __future__ import annotations
-
 import errno
 import json
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Are events and numbers written as a slow writer, row by row, would write them?"""
 
-from __future__ import annotations
-
 import csv
 import io
 import json

@@ -1,7 +1,5 @@
 """Do drawings travel with results, each under a name of its own, so that the scene loads again anywhere?"""
 
-from __future__ import annotations
-
 import dataclasses
 import shutil
 from pathlib import Path

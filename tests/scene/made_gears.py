@@ -1,7 +1,5 @@
 """Scenes of geared bodies, as text."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from watchsim.scene.load import load

@@ -1,7 +1,5 @@
 """What does the reader make of a scene written as a text, and what does it refuse? With bodies that forces act on."""
 
-from __future__ import annotations
-
 import pytest
 import tomllib
 

@@ -1,7 +1,5 @@
 """Are bores on layers of their own taken out of plates exactly, once, and only where they lie in material?"""
 
-from __future__ import annotations
-
 import json
 import math
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Is what carries what resolved as told, weighed right, and refused by name where it could not be simulated exactly?"""
 
-from __future__ import annotations
-
 import cmath
 import math
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Which outlines may touch by [[contacts]], and what does nothing or is declared twice?"""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """What comes of a mainspring's torque, and of its train's inertia, at the body that they drive?"""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Is a leaf spring as stiff as a cantilever, and does a preloaded one stay on its stop until the preload is exceeded?"""
 
-from __future__ import annotations
-
 import math
 from dataclasses import fields, replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Does a scene file become the scene it describes?"""
 
-from __future__ import annotations
-
 import hashlib
 import math
 import pickle

@@ -1,7 +1,5 @@
 """What becomes of a scene over which another one is written? Hand-worked, entry by entry."""
 
-from __future__ import annotations
-
 import copy
 import math
 import pickle

@@ -1,7 +1,5 @@
 """Which outlines of its drawing does a body get, for what, and which findings of the drawing concern it?"""
 
-from __future__ import annotations
-
 import cmath
 import itertools
 import math

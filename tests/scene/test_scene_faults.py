@@ -1,7 +1,5 @@
 """Is every kind of bad scene refused with file, line, key and cure, all faults at once?"""
 
-from __future__ import annotations
-
 import sys
 
 import pytest

@@ -1,7 +1,5 @@
 """Does the JSON Schema accept what the program reads, and refuse what it can of what the program refuses?"""
 
-from __future__ import annotations
-
 import json
 import re
 from pathlib import Path
@@ -46,7 +44,7 @@ duration = "1 s"
 
 
 def test_it_is_a_schema_of_draft_4():
-    Draft4Validator.check_schema(SCHEMA)
+    assert list(Draft4Validator(Draft4Validator.META_SCHEMA).iter_errors(SCHEMA)) == []
 
 
 @pytest.mark.parametrize("path", VALID, ids=lambda path: f"{path.parent.name}/{path.stem}")

@@ -1,7 +1,5 @@
 """Which layers of which bodies become slabs, how thick, and at which height? Made-up bodies."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from itertools import combinations

@@ -1,7 +1,5 @@
 """Are plates, turned parts and hairsprings of a scene as heavy as their formulas say, and is every misuse refused?"""
 
-from __future__ import annotations
-
 import json
 import math
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """How heavy is a body by what is written of it, where does it stand, and what of it is refused? By hand, body by body."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """What swings, how fast, and which parts of an escapement follow from it? Made-up scenes with unequal numbers."""
 
-from __future__ import annotations
-
 import cmath
 import math
 from dataclasses import replace

@@ -3,8 +3,6 @@
 Factors to SI stand here as decimals, from tables of units; the program has fractions, prefixes and powers.
 """
 
-from __future__ import annotations
-
 import copy
 import math
 from typing import Any

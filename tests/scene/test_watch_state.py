@@ -1,7 +1,5 @@
 """Which way is up, how warm is it, when was it wound: what [watch] makes of a scene, against doing it by hand."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Do the scenes of the project load with their real drawings, and do faults of real drawings reach the user?"""
 
-from __future__ import annotations
-
 import json
 import math
 from itertools import pairwise, permutations

@@ -1,7 +1,5 @@
 """Which cams made of many tangent arcs have a motion that is known?"""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

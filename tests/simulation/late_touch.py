@@ -4,8 +4,6 @@ A block slides on the ground with friction, so that the motion is coupled, and a
 closing is made to say that the disc closes at LATE, long after it did.
 """
 
-from __future__ import annotations
-
 import json
 
 from moving_scenes import box, circle, ground

@@ -1,7 +1,5 @@
 """Contacts that no drawing has: random force directions, as kernels keep them and as whole matrices."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Which small scenes have motions that are known in advance?"""
 
-from __future__ import annotations
-
 import dataclasses
 import functools
 import math

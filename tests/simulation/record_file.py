@@ -7,8 +7,6 @@ with bounds.
 How far a run may be off comes from copies of it, changed by what rounding elsewhere may come to.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path

@@ -3,8 +3,6 @@
 Random mechanisms of the hunt, scenes of the library, and benchmarks: together they go through every part of the solver.
 """
 
-from __future__ import annotations
-
 import dataclasses
 import functools
 import sys
@@ -54,7 +52,7 @@ def scene_of(name: str) -> Short:
     if kind == "case":
         return _cases()[what]
     if kind.startswith("hunt"):
-        from hunt.generator.generate import mechanism
+        from hunt.generate import mechanism
 
         scene = mechanism(SEED, int(what.rsplit("-", 1)[1]))
         short: Short = _everything(scene), scene.duration, {}
@@ -75,7 +73,7 @@ def _cases() -> dict[str, Short]:
 
 def all_names(of_the_hunt: int) -> list[str]:
     """Everything that could be recorded."""
-    from hunt.generator.generate import mechanism
+    from hunt.generate import mechanism
 
     hunted = [f"{mechanism(SEED, k).title}-{k}" for k in range(of_the_hunt)]
     names = [*(f"library/{name}" for name in LIBRARY), *(f"case/{name}" for name in _cases())]

@@ -1,7 +1,5 @@
 """Scenes in which all lengths, times or masses are so many times as large, or which lie otherwise: the same mechanism."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 

@@ -3,8 +3,6 @@
 python short_runs.py FILE.npz NAME ...
 """
 
-from __future__ import annotations
-
 import dataclasses
 import sys
 from collections.abc import Callable

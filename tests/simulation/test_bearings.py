@@ -1,7 +1,5 @@
 """Does the friction of a bearing go with what it carries?"""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

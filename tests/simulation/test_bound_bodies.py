@@ -1,7 +1,5 @@
 """Do springs, gears and torques between bodies act as closed forms and the other method say?"""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 from typing import Any

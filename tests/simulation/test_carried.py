@@ -1,7 +1,5 @@
 """Do bodies carried by others, and planets with play, move as closed forms, conserved quantities and other algorithms say?"""
 
-from __future__ import annotations
-
 import dataclasses
 import functools
 import math

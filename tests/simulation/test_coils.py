@@ -1,7 +1,5 @@
 """Does a hairspring that bends and weighs do what its elastica, solved by other means, says?"""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from functools import cache

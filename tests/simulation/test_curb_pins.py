@@ -1,7 +1,5 @@
 """Does a hairspring that plays between curb pins swing as a piecewise linear oscillator?"""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Any

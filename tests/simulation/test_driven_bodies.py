@@ -1,7 +1,5 @@
 """Does a driven body move exactly as prescribed, and does a run-down mainspring find its way?"""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 from pathlib import Path

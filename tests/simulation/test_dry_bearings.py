@@ -1,7 +1,5 @@
 """Does dry friction in a bearing hold, break loose and take energy as Coulomb's law says?"""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 

@@ -1,7 +1,5 @@
 """Does contact pass from one face to the next, along flat, open and flush ones, and through lines of centres?"""
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from pathlib import Path as Path_of_pathlib

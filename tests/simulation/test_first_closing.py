@@ -1,7 +1,5 @@
 """Is the first contact to close found at its time, with no more looked at than that takes? Against polynomials of time."""
 
-from __future__ import annotations
-
 import heapq
 import math
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """Does a run end when nothing can change any more, and only then?"""
 
-from __future__ import annotations
-
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st

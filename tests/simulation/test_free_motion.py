@@ -1,7 +1,5 @@
 """Is motion without contacts that of its equations: closed forms, scipy, forty digits?"""
 
-from __future__ import annotations
-
 import dataclasses
 import json
 import math

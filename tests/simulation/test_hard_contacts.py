@@ -1,7 +1,5 @@
 """What happens at the edges of contact, and do heaps come to rest?"""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 

@@ -1,7 +1,5 @@
 """Has the integrator its order, do paths and brackets hold, and is drift taken back by the smallest change?"""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 from types import SimpleNamespace

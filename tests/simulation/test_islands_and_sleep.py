@@ -1,7 +1,5 @@
 """Do bodies that have nothing to do with each other leave each other alone, and do they rest until they must move?"""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 from types import SimpleNamespace

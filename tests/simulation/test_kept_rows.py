@@ -1,7 +1,5 @@
 """Is what is kept of a run, flush by flush, what one would choose who had all of it before him, and do sums replace it?"""
 
-from __future__ import annotations
-
 import functools
 import gc
 import math

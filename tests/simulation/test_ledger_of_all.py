@@ -1,7 +1,5 @@
 """Does the energy balance with loaded and loose pivots, slip laws, a shaken case and a bent hairspring at once?"""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Do springs between points of bodies act as the equations say? Against scipy's integrator, written down independently."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Does Moreau's time stepping, an algorithm of its own, come to the same motion, by the same laws?"""
 
-from __future__ import annotations
-
 import dataclasses
 import functools
 import math

@@ -1,7 +1,5 @@
 """Is no gap between the ends of an arc passed unseen, however long the steps are?"""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

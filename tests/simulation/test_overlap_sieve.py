@@ -1,7 +1,5 @@
 """Does the sieve leave to the polygons what shapely finds, at the instants that matter?"""
 
-from __future__ import annotations
-
 import dataclasses
 import itertools
 import math

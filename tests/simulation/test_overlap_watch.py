@@ -1,7 +1,5 @@
 """Is material inside material found in a run, and nothing reported of sound ones?"""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 

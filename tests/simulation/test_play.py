@@ -1,7 +1,5 @@
 """Does a pivot with play roll and slide in its hole as a shaft does?"""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Do incline and bench lever move as a closed form and other engines say?"""
 
-from __future__ import annotations
-
 import functools
 import math
 

@@ -1,7 +1,5 @@
 """Do rows of rebounds end where they must, and does what rests stay at rest?"""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Does the solver still do what it did when this was recorded, and does a record notice what moved?"""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """Is a saved state complete, refused where it does not fit, and joined to what follows?"""
 
-from __future__ import annotations
-
 import dataclasses
 import os
 import signal

@@ -1,7 +1,5 @@
 """Does a mechanism move alike whatever its size and pace, and do its events depend on neither, nor on the tolerance?"""
 
-from __future__ import annotations
-
 import functools
 import itertools
 

@@ -1,7 +1,5 @@
 """Does what happens in an accelerated and turning case come out as exactly as in one at rest?"""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

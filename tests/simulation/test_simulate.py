@@ -1,7 +1,5 @@
 """Does `simulate` keep what was asked for, whatever happens, and say how a run ended?"""
 
-from __future__ import annotations
-
 import dataclasses
 import json
 import math

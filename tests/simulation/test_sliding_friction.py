@@ -1,7 +1,5 @@
 """Is friction that depends on the speed of slip what its law says, with exact events where stick turns into slip?"""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Does a run begin in contact where bodies touch within rounding, and are overlaps taken back or refused?"""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Parts of a scene that cannot influence each other go on by themselves, and together they read as one run."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache

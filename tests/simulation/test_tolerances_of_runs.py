@@ -1,7 +1,5 @@
 """Are tolerances those of docs/theory/method.md, for a scene of any size and in any unit of length?"""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 from types import SimpleNamespace

@@ -1,7 +1,5 @@
 """Is every touch found: grazes, thin blades, gaps that last, long steps past joints?"""
 
-from __future__ import annotations
-
 import json
 import math
 import os

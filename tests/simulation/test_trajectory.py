@@ -1,7 +1,5 @@
 """Is the motion between rows that of its polynomials, and are frames and pairs those of the scene?"""
 
-from __future__ import annotations
-
 import functools
 import math
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Do the kernels do the same as plain Python?"""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

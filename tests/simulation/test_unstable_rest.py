@@ -3,8 +3,6 @@
 The times are those of the equation of motion, solved by scipy to 1e-12.
 """
 
-from __future__ import annotations
-
 import math
 
 import pytest

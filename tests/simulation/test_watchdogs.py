@@ -1,7 +1,5 @@
 """Is a run that goes wrong ended by its own checks, and do instants come to an end?"""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

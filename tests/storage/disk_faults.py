@@ -4,8 +4,6 @@ Counts every opening for writing, write, synchronisation, rename, link and remov
 the process. `log` holds them all.
 """
 
-from __future__ import annotations
-
 import builtins
 import contextlib
 import errno

@@ -1,7 +1,5 @@
 """Are columns in files those in memory, also where the disk fails half way?"""
 
-from __future__ import annotations
-
 import errno
 import sys
 from pathlib import Path

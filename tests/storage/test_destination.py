@@ -1,7 +1,5 @@
 """Is a place that cannot be written refused before anything is computed, with a word and without a trace?"""
 
-from __future__ import annotations
-
 import os
 import shutil
 import sys

@@ -1,7 +1,5 @@
 """Does a process that ends at once take its scratch folders with it, and nothing else, whatever its main thread is doing?"""
 
-from __future__ import annotations
-
 import os
 import signal
 import sys

@@ -1,7 +1,5 @@
 """Does a file made without a name appear whole under the name it is given, and not before?"""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 

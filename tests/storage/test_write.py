@@ -1,7 +1,5 @@
 """Is there always one of the two, the old or the new, and never half of anything, whatever fails and whenever?"""
 
-from __future__ import annotations
-
 import shutil
 import sys
 from pathlib import Path

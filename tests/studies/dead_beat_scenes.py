@@ -3,8 +3,6 @@
 The locking arcs have the pivot as centre and exert no torque, so only the impulse faces act. `designs.graham` draws them.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import watchsim as ws

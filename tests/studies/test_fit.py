@@ -1,7 +1,5 @@
 """Does a fit find the numbers that made the data, say how well it knows them, and name what it cannot tell apart?"""
 
-from __future__ import annotations
-
 import json
 import math
 from pathlib import Path

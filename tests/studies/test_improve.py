@@ -1,7 +1,5 @@
 """Are goals reached, limits kept, and what holds a design back named, where the answer is known in closed form?"""
 
-from __future__ import annotations
-
 import dataclasses
 import json
 import math

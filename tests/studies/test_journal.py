@@ -1,7 +1,5 @@
 """Does a study keep its rows where the disk fails for a while, and an earlier one where it cannot begin?"""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Is the limit cycle the one that a long run comes to rest on?"""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

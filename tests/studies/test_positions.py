@@ -1,7 +1,5 @@
 """Does the table of positions hold what each state gives by itself, and does what follows from it follow?"""
 
-from __future__ import annotations
-
 import json
 import math
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Are derivatives on the limit cycle what mechanics says they must be?"""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Is what a blow does found as it is, and does the watch that is not struck stay out of it?"""
 
-from __future__ import annotations
-
 import json
 import math
 from dataclasses import replace

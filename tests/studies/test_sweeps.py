@@ -1,7 +1,5 @@
 """Do the rows of a sweep depend on nothing but their points?"""
 
-from __future__ import annotations
-
 import csv
 import io
 import json

@@ -1,7 +1,5 @@
 """Are indices, intervals and rare failures what closed forms say?"""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Is a study of tolerances the same study wherever and in whatever order its samples are computed?"""
 
-from __future__ import annotations
-
 import json
 import math
 

@@ -1,7 +1,5 @@
 """Does a mechanism turned by hand do what its construction says? Angles against the circles it was drawn from."""
 
-from __future__ import annotations
-
 import dataclasses
 import json
 import math

@@ -1,7 +1,5 @@
 """Does the tutorial that is a notebook run from its first cell to its last, and does everything in it show itself?"""
 
-from __future__ import annotations
-
 import json
 import re
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Do the tutorials and the pages for developers work as they stand?"""
 
-from __future__ import annotations
-
 import argparse
 import math
 import re

@@ -1,7 +1,5 @@
 """Which benchmarks with exact solutions are there, by name, and what does the published page say of them?"""
 
-from __future__ import annotations
-
 import csv
 from pathlib import Path
 

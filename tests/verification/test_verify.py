@@ -1,7 +1,5 @@
 """Do all benchmarks come out, and would `verify` notice if one did not?"""
 
-from __future__ import annotations
-
 import json
 import math
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Does the woodpecker toy come out, and are its linear systems solved as closed forms say?"""
 
-from __future__ import annotations
-
 import math
 from itertools import pairwise
 
