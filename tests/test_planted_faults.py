@@ -34,14 +34,7 @@ def test_what_is_planted_and_what_is_not() -> None:
 
 
 @pytest.mark.parametrize(
-    "name",
-    [
-        "drawing/projection.py",
-        "analysis/timegrapher.py",
-        "render/movie.py",
-        "dynamics/impact.py",
-        "units.py",
-    ],
+    "name", ["drawing/projection.py", "analysis/timegrapher.py", "render/movie.py", "dynamics/impact.py", "units.py"]
 )
 def test_every_fault_is_one_change_of_a_real_file(name: str) -> None:
     source = (ROOT / "watchsim" / name).read_text(encoding="utf-8")

@@ -21,30 +21,9 @@ from watchsim.studies.axes import axes_from_texts
 ROOT = Path(__file__).resolve().parents[2]
 LEVER = ROOT / "profiles" / "bench_lever" / "scene.toml"
 SUMMARY_KEYS = [
-    "scene",
-    "method",
-    "tolerance",
-    "simulated_s",
-    "wall_s",
-    "compile_s",
-    "realtime_factor",
-    "stop",
-    "bodies",
-    "impacts",
-    "events",
-    "lcp_failures",
-    "worst_penetration_m",
-    "energy",
-    "amplitude_deg",
-    "amplitude_deg_error",
-    "period_s",
-    "period_s_error",
-    "rate_s_per_d",
-    "rate_s_per_d_error",
-    "beat_error_ms",
-    "beat_error_ms_error",
-    "expect",
-    "versions",
+    *("scene", "method", "tolerance", "simulated_s", "wall_s", "compile_s", "realtime_factor", "stop", "bodies", "impacts"),
+    *("events", "lcp_failures", "worst_penetration_m", "energy", "amplitude_deg", "amplitude_deg_error", "period_s"),
+    *("period_s_error", "rate_s_per_d", "rate_s_per_d_error", "beat_error_ms", "beat_error_ms_error", "expect", "versions"),
 ]
 
 
@@ -276,12 +255,7 @@ def test_expectations_of_another_run_are_not_judged(tmp_path: Path, capsys: pyte
 @pytest.mark.parametrize("command", ["inspect", "check"])
 @pytest.mark.parametrize(
     ("name", "words"),
-    [
-        ("", "is a folder"),
-        ("in.dxf", "must end in .png"),
-        ("x.txt", "must end in .png"),
-        ("same.png", "is the input itself"),
-    ],
+    [("", "is a folder"), ("in.dxf", "must end in .png"), ("x.txt", "must end in .png"), ("same.png", "is the input itself")],
 )
 def test_a_picture_goes_nowhere_else(
     command: str, name: str, words: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]

@@ -49,15 +49,7 @@ def test_a_scene_of_dimensions_is_the_scene_of_the_drawings(name, tmp_path):
     one, other = (load(drawn.write(tmp_path / str(drawings), drawings=drawings)) for drawings in (False, True))
     assert [body.loops for body in one.bodies] == [body.loops for body in other.bodies]
     kinds = [
-        "title",
-        "springs",
-        "torques",
-        "damping",
-        "contacts",
-        "gears",
-        "line_springs",
-        "duration",
-        "tolerances",
+        *("title", "springs", "torques", "damping", "contacts", "gears", "line_springs", "duration", "tolerances"),
         "lift_angle",
     ]
     assert all(getattr(one, kind) == getattr(other, kind) for kind in kinds)

@@ -54,12 +54,7 @@ def test_short_forms_are_kinds(lever: Path, tmp_path: Path, capsys: pytest.Captu
 def test_all_leaves_out_what_a_run_does_not_have(disc: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["plot", str(disc), "--kind", "all", "-o", str(tmp_path / "all")]) == 0
     assert sorted(path.name for path in (tmp_path / "all").iterdir()) == [
-        "energy.png",
-        "forces.png",
-        "kinematics.png",
-        "phase-portrait.png",
-        "sound.png",
-        "wear.png",
+        *("energy.png", "forces.png", "kinematics.png", "phase-portrait.png", "sound.png", "wear.png")
     ]
     assert "No plot of torque: nothing in this scene swings" in capsys.readouterr().err
 

@@ -21,14 +21,7 @@ MOTIONS = ("pivot", "slide", "free", "fixed")
 DEGREES = {"pivot": 1, "slide": 1, "free": 3, "fixed": 0}
 PLACES = {"a": (0.3, -0.2), "b": (-0.1, 0.4)}
 KINDS = (
-    "corner-line",
-    "line-corner",
-    "corner-arc",
-    "arc-corner",
-    "corner-bite",
-    "bite-corner",
-    "arc-line",
-    "line-arc",
+    *("corner-line", "line-corner", "corner-arc", "arc-corner", "corner-bite", "bite-corner", "arc-line", "line-arc"),
     "arc-arc",
 )
 

@@ -4,10 +4,7 @@ import random
 from collections.abc import Callable, Sequence
 
 Accident = Callable[[random.Random, bytes], bytes]
-NUMBERS = (
-    *(b"0", b"-1", b"1e308", b"-1e-320", b"nan", b"inf", b"1e9", b"-1e9"),
-    *(b"", b"99999999999", b"1e-300", b"3.7"),
-)
+NUMBERS = (*(b"0", b"-1", b"1e308", b"-1e-320", b"nan", b"inf", b"1e9", b"-1e9"), *(b"", b"99999999999", b"1e-300", b"3.7"))
 
 
 def after_accidents(rng: random.Random, data: bytes, accidents: Sequence[Accident]) -> bytes:

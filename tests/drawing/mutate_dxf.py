@@ -15,23 +15,7 @@ ENDING = "dxf"
 TOLD = ("layer-off", "paper-space", "edge-on")  # findings that account for entities not drawn
 NUMBERS = (*accidents.NUMBERS, b"0x10", b"1,5")
 CODES = (
-    b"0",
-    b"1",
-    b"2",
-    b"5",
-    b"8",
-    b"10",
-    b"11",
-    b"20",
-    b"40",
-    b"41",
-    b"42",
-    b"50",
-    b"62",
-    b"66",
-    b"67",
-    b"70",
-    b"210",
+    *(b"0", b"1", b"2", b"5", b"8", b"10", b"11", b"20", b"40", b"41", b"42", b"50", b"62", b"66", b"67", b"70", b"210"),
     b"-5",
 )
 WORDS = (b"INSERT", b"BLOCK", b"ENDBLK", b"SECTION", b"ENDSEC", b"EOF", b"SPLINE", b"VERTEX", b"SEQEND", b"LINE", b"POLYLINE")
@@ -202,13 +186,6 @@ def lines_doubled(rng: random.Random, data: bytes) -> bytes:
 
 
 ACCIDENTS: tuple[Accident, ...] = (
-    bytes_overwritten,
-    cut_off,
-    line_lost,
-    line_replaced,
-    lines_swapped,
-    lines_doubled,
-    code_changed,
-    number_changed,
+    *(bytes_overwritten, cut_off, line_lost, line_replaced, lines_swapped, lines_doubled, code_changed, number_changed),
     nesting_changed,
 )

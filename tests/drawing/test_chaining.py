@@ -429,16 +429,7 @@ def test_outlines_drawn_twice_are_kept_once_wherever_they_begin() -> None:
     other_way = Loop(tuple(edge.reversed() for edge in reversed(turned.edges)), "L")
     cut = band((0, 0), (4, 0), (4, 3), (0, 2.99))
     half = band((0, 0), (2, 0), (4, 0), (4, 3), (0, 3))
-    whole = [
-        band(*BOX),
-        turned,
-        circle(0, 0, 1),
-        other_way,
-        cut,
-        circle(0, 0, 1, 2.0, -TURN),
-        half,
-        band(*BOX, shift=1e-3),
-    ]
+    whole = [*(band(*BOX), turned, circle(0, 0, 1), other_way, cut, circle(0, 0, 1, 2.0, -TURN), half, band(*BOX, shift=1e-3))]
     outlines = [Outline(loop, tuple(f"P{k}" for _ in loop.edges)) for k, loop in enumerate(whole)]
     kept, findings = unique_loops(outlines)
     assert kept == [outlines[k] for k in (0, 2, 4, 6, 7)]

@@ -225,7 +225,7 @@ def test_splines_are_cut_where_a_knot_is_as_often_there_as_the_degree() -> None:
         )
     cut = pieces_of(splines, 1e-3)
     assert [[piece.breaks.tolist() for piece in row] for row in cut] == [
-        *([[0, 1, 2], [2, 3]], [[0, 1, 2], [2, 3]], [[0, 1]], [[3, 4, 5]]),
+        *([[0, 1, 2], [2, 3]], [[0, 1, 2], [2, 3]], [[0, 1]], [[3, 4, 5]])
     ]
     for spline, row in zip(splines, cut, strict=True):
         weights = np.array(spline.weights or [1.0] * len(spline.points))[:, None]

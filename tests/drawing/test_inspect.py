@@ -22,20 +22,8 @@ from watchsim.geometry.primitives import TURN, Arc, Line
 Reader = Callable[..., Drawing]
 
 TOP = (
-    *(
-        "file",
-        "format",
-        "units",
-        "units_from",
-        "extents_mm",
-        "layers",
-        "loops",
-        "points",
-        "fitted",
-        "drawn",
-        "ignored",
-        "findings",
-    ),
+    *("file", "format", "units", "units_from", "extents_mm", "layers", "loops", "points", "fitted", "drawn", "ignored"),
+    "findings",
     *("lines", "arcs", "length_mm", "area_mm2", "circles"),
 )
 

@@ -26,10 +26,7 @@ THEIRS = few(sorted(name for name in FACTS if FACTS[name].get("length")), lambda
 EMPTY = sorted(name for name in FACTS if not FACTS[name].get("length"))
 OURS = [path.relative_to(OWN).as_posix() for path in sorted(OWN.glob("*/*.dxf"))]
 MARKS = marks(FOLDER / "truth.json")
-NAMES = [
-    *OURS,
-    *(pytest.param(*getattr(one, "values", [one]), marks=[*getattr(one, "marks", ()), *MARKS]) for one in THEIRS),
-]
+NAMES = [*OURS, *(pytest.param(*getattr(one, "values", [one]), marks=[*getattr(one, "marks", ()), *MARKS]) for one in THEIRS)]
 HEADER_UNITS = {None: None, "0": None, "1": "inch", "4": "mm", "5": "cm", "6": "m"}
 PAGE_UNITS = {
     "svg/openMEMSdesign__Schrittschaltwerke.svg": "mm",

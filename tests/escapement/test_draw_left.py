@@ -38,8 +38,7 @@ def test_the_draw_that_is_left_decides_whether_the_lever_moves(
     draw, arm = function.pallets[k].draw.value, function.arms[k]
     grip = share * arm * math.sin(draw - math.atan(FRICTION))
     alone = replace(
-        scene,
-        contacts=tuple(one for one in scene.contacts if "balance" not in {side.body for side in one.sides}),
+        scene, contacts=tuple(one for one in scene.contacts if "balance" not in {side.body for side in one.sides})
     ).set("bodies.lever.angle", function.banks[0] - math.radians(0.05))
     alone = alone.set("bodies.wheel.angle", alone.body("wheel").angle + math.radians(0.0066))
     run = simulate(pivoted(alone, grip), duration=0.05)

@@ -233,10 +233,7 @@ FIRST: Corners = [
     [(3, 1.2), (3.5, 1.5), (3.8, 1.9), (3.9, 2.6)],
     [(3.9, 2.6), (4.0, 3.3), (4.4, 5.0), (6.0, 6.0)],
 ]
-SECOND: Corners = [
-    [(0, 0), (0, 1), (-0.5, 2), (-1.5, 2.4)],
-    [(-1.5, 2.4), (-2.0, 2.6), (-2.6, 2.7), (-4.0, 2.4)],
-]
+SECOND: Corners = [[(0, 0), (0, 1), (-0.5, 2), (-1.5, 2.4)], [(-1.5, 2.4), (-2.0, 2.6), (-2.6, 2.7), (-4.0, 2.4)]]
 
 
 def measured(span: list[tuple[float, float]]) -> tuple[float, float, float]:
@@ -355,16 +352,7 @@ def test_a_curve_is_cut_at_ascending_places_several_of_them_in_one_span() -> Non
 def test_each_curve_is_cut_at_its_own_places_but_not_into_slivers(monkeypatch: pytest.MonkeyPatch) -> None:
     """Three spans from 0 on, two from 4 on, two from 7 on."""
     places = [
-        1.1e-4,
-        1.3,
-        1.3 + 0.9e-4,
-        1.3 + 1.1e-4,
-        2.0 - 0.9e-4,
-        2.0 + 0.9e-4,
-        3.0 - 0.9e-4,
-        7.0 + 0.9e-4,
-        8.5,
-        9.0 - 1.1e-4,
+        *(1.1e-4, 1.3, 1.3 + 0.9e-4, 1.3 + 1.1e-4, 2.0 - 0.9e-4, 2.0 + 0.9e-4, 3.0 - 0.9e-4, 7.0 + 0.9e-4, 8.5, 9.0 - 1.1e-4)
     ]
     monkeypatch.setattr(smooth_of_smooth_parts, "jumps", lambda *_: np.array([8.5, *places[:6]]))
     monkeypatch.setattr(smooth_of_smooth_parts, "pauses", lambda *_: np.array([*places[6:], 1.3, 2.0]))

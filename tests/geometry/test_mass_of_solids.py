@@ -90,12 +90,7 @@ def test_rectangle_and_triangle() -> None:
 def test_stadium_of_two_half_turns() -> None:
     a, r = 4e-3, 1e-3
     loop = Loop(
-        (
-            Line(-a, -r, a, -r),
-            Arc(a, 0.0, r, -math.pi / 2, math.pi),
-            Line(a, r, -a, r),
-            Arc(-a, 0.0, r, math.pi / 2, math.pi),
-        )
+        (Line(-a, -r, a, -r), Arc(a, 0.0, r, -math.pi / 2, math.pi), Line(a, r, -a, r), Arc(-a, 0.0, r, math.pi / 2, math.pi))
     )
     found = section([loop])
     assert found.area == pytest.approx(4 * a * r + math.pi * r * r, rel=TINY, abs=0.0)

@@ -116,9 +116,7 @@ def test_what_comes_within_the_reach_meets(gap: float, touches: bool) -> None:
 
 @pytest.mark.parametrize("unit", [1.0, 1e-5])
 @pytest.mark.parametrize(
-    "edge",
-    [Line(1, 2, 5, 5), Arc(1, 2, 3, 0.4, 2.0), Arc(1, 2, 3, 0.4, -2.0), Arc(0, 0, 2, 3.0, 5.5)],
-    ids=repr,
+    "edge", [Line(1, 2, 5, 5), Arc(1, 2, 3, 0.4, 2.0), Arc(1, 2, 3, 0.4, -2.0), Arc(0, 0, 2, 3.0, 5.5)], ids=repr
 )
 def test_a_point_is_near_an_edge_within_the_reach_of_any_of_its_points(edge: Edge, unit: float) -> None:
     dense = np.array([edge.point(share) for share in np.linspace(0.0, 1.0, 2001).tolist()])

@@ -28,10 +28,7 @@ from watchsim.simulation.state import EventKind, Stop
 
 
 def two_discs(restitution: float = 0.5) -> Scene:
-    bodies = (
-        sliding("a", circle(5e-3), (0.0, 0.0), 0.0, 0.5, 0.02),
-        sliding("b", circle(5e-3), (20e-3, 1e-3), 0.0, 0.0, 0.03),
-    )
+    bodies = (sliding("a", circle(5e-3), (0.0, 0.0), 0.0, 0.5, 0.02), sliding("b", circle(5e-3), (20e-3, 1e-3), 0.0, 0.0, 0.03))
     return Scene("discs", bodies, contacts=(Contact((Side("a"), Side("b")), 0.0, restitution),), duration=0.04)
 
 
@@ -131,10 +128,7 @@ def test_steps_part_what_bodies_in_touch_pass_on_at_once():
 
 
 def two_discs_books() -> Scene:
-    bodies = (
-        sliding("a", circle(5e-3), (0.0, 0.0), 0.0, 0.5, 0.02),
-        sliding("b", circle(5e-3), (20e-3, 1e-3), 0.0, 0.0, 0.03),
-    )
+    bodies = (sliding("a", circle(5e-3), (0.0, 0.0), 0.0, 0.5, 0.02), sliding("b", circle(5e-3), (20e-3, 1e-3), 0.0, 0.0, 0.03))
     return Scene("discs", bodies, (Spring("b", 20.0),), contacts=(Contact((Side("a"), Side("b")), 0.0, 0.7),), duration=0.04)
 
 
@@ -439,10 +433,7 @@ def pendulum_pieces(angle: float, duration: float) -> Scene:
 
 def discs(restitution: float = 0.5) -> Scene:
     """One slides along a spring and strikes a free one."""
-    bodies = (
-        sliding("a", circle(5e-3), (0.0, 0.0), 0.0, 0.5, 0.02),
-        free("b", circle(5e-3), (20e-3, 1e-3), 0.03),
-    )
+    bodies = (sliding("a", circle(5e-3), (0.0, 0.0), 0.0, 0.5, 0.02), free("b", circle(5e-3), (20e-3, 1e-3), 0.03))
     contacts = (Contact((Side("a"), Side("b")), 0.2, restitution),)
     return Scene("discs", bodies, (Spring("a", 5.0, 0.01),), contacts=contacts, duration=0.06)
 

@@ -79,14 +79,8 @@ def test_text_for_people(desk):
     text = check_text(check_report(scene, PAIRS), scene)
     assert text.startswith("Small lever\n")
     for part in (
-        "inertia 12 mg·cm²",
-        "10 mm × 10 mm",
-        "turned by -270°",
-        "centre distance wheel - lever: 9 mm",
-        "4 Hz = 28800 vph",
-        "drive on wheel: -1 µN·m",
-        "Q = 250",
-        "contact wheel.TEETH - lever: friction 0.12, restitution 0.2",
+        *("inertia 12 mg·cm²", "10 mm × 10 mm", "turned by -270°", "centre distance wheel - lever: 9 mm", "4 Hz = 28800 vph"),
+        *("drive on wheel: -1 µN·m", "Q = 250", "contact wheel.TEETH - lever: friction 0.12, restitution 0.2"),
         "wheel - lever                   120               17                      3",
         "warning: wheel.dxf: an edge was drawn twice.",
     ):
@@ -127,10 +121,10 @@ def said(*bodies: Body, **forces: Any) -> list[str]:
 
 def test_where_lengths_change_their_unit() -> None:
     assert [length(value) for value in (0.99e-4, 1.01e-4, 0.99, 1.01, 0.0, -0.5)] == [
-        *("99 µm", "0.101 mm", "990 mm", "1.01 m", "0 m", "-500 mm"),
+        *("99 µm", "0.101 mm", "990 mm", "1.01 m", "0 m", "-500 mm")
     ]
     assert [place(value) for value in (1.23456789e-3, -4e-10, 1e-9, 0.6e-9, 0.4e-9, 0.1)] == [
-        *("1.234568 mm", "0 mm", "0.000001 mm", "0.000001 mm", "0 mm", "100 mm"),
+        *("1.234568 mm", "0 mm", "0.000001 mm", "0.000001 mm", "0 mm", "100 mm")
     ]
     assert [turned(math.radians(value)) for value in (1e-9, 0.4e-9, -33.333333333)] == ["1e-09°", "0°", "-33.3333°"]
 

@@ -111,12 +111,7 @@ def test_half_a_pitch_is_what_the_wheel_goes_from_one_side_to_the_other() -> Non
 
 @pytest.mark.parametrize(
     ("changed", "key"),
-    [
-        ({"teeth": 26}, "teeth"),
-        ({"lift": "39°"}, "lift"),
-        ({"drop": "4.5 mm"}, "drop"),
-        ({"slope": "26°"}, "slope"),
-    ],
+    [({"teeth": 26}, "teeth"), ({"lift": "39°"}, "lift"), ({"drop": "4.5 mm"}, "drop"), ({"slope": "26°"}, "slope")],
 )
 def test_what_cannot_be_drawn_is_refused_with_the_dimension_to_change(changed: dict[str, str | int], key: str) -> None:
     with pytest.raises(Exception, match=key):
@@ -177,14 +172,9 @@ def test_amplitude_and_rate_as_airy_says():
 @pytest.mark.parametrize(
     ("chosen", "blamed"),
     [
-        ({"lock": 2.0, "lift": 1.5}, "lock"),
-        ({"start": 1.0}, "start"),
-        ({"reach": 1.0}, "reach"),
-        ({"pins": 60, "drop": 2.5}, "drop"),
-        ({"pin_diameter": 9.0}, "pin_diameter"),
-        ({"lift": 5.0, "drop": 4.0, "start": 3.5}, "lift"),
-        ({"torque": 500.0}, "torque"),
-        ({"torque": 1.0}, "torque"),
+        *(({"lock": 2.0, "lift": 1.5}, "lock"), ({"start": 1.0}, "start"), ({"reach": 1.0}, "reach")),
+        *(({"pins": 60, "drop": 2.5}, "drop"), ({"pin_diameter": 9.0}, "pin_diameter")),
+        *(({"lift": 5.0, "drop": 4.0, "start": 3.5}, "lift"), ({"torque": 500.0}, "torque"), ({"torque": 1.0}, "torque")),
     ],
 )
 def test_conflicts_name_what_to_change_first(chosen, blamed):

@@ -216,12 +216,8 @@ def test_friction_lowers_amplitude_and_rate():
 @pytest.mark.parametrize(
     ("chosen", "blamed"),
     [
-        ({"tooth_width": 11.0}, "tooth_width"),
-        ({"tooth_width": 10.55}, "tooth_width"),
-        ({"drop": 1.0}, "drop"),
-        ({"lift": 20.0, "friction": 0.25}, "lift"),
-        ({"start": 40.0, "lift": 70.0}, "start"),
-        ({"torque": 5.0}, "torque"),
+        *(({"tooth_width": 11.0}, "tooth_width"), ({"tooth_width": 10.55}, "tooth_width"), ({"drop": 1.0}, "drop")),
+        *(({"lift": 20.0, "friction": 0.25}, "lift"), ({"start": 40.0, "lift": 70.0}, "start"), ({"torque": 5.0}, "torque")),
         ({"torque": 0.004}, "torque"),
     ],
 )

@@ -23,7 +23,7 @@ EXTRA = {  # guessed and not so
     "coaxial": {
         frozenset((("lever", "FORK"), ("balance", "IMPULSE_STONE"))),
         frozenset((("lever", "LOCKING_STONES"), ("banking", "PINS"))),
-    },
+    }
 }
 
 

@@ -8,12 +8,8 @@ from watchsim.proposal.words import LEVER, OSCILLATOR, facing_by_name, part_of
 @pytest.mark.parametrize(
     ("first", "second"),
     [
-        ("STEIGRAD_ZÄHNE", "ANKER_HEBESTEINE"),
-        ("Zähne", "Klauen"),
-        ("Anker Messer", "Unruh Sicherheitsrolle"),
-        ("ANCRE_DARD", "BALANCIER_PETIT_PLATEAU"),
-        ("dents", "levées"),
-        ("Gabel", "Hebelstein"),
+        *(("STEIGRAD_ZÄHNE", "ANKER_HEBESTEINE"), ("Zähne", "Klauen"), ("Anker Messer", "Unruh Sicherheitsrolle")),
+        *(("ANCRE_DARD", "BALANCIER_PETIT_PLATEAU"), ("dents", "levées"), ("Gabel", "Hebelstein")),
     ],
 )
 def test_surfaces_that_face_each_other(first: str, second: str) -> None:
@@ -23,13 +19,7 @@ def test_surfaces_that_face_each_other(first: str, second: str) -> None:
 
 @pytest.mark.parametrize(
     ("name", "part"),
-    [
-        ("Hebesteine", LEVER),
-        ("levées", LEVER),
-        ("dard", LEVER),
-        ("Rolle", OSCILLATOR),
-        ("plateau", OSCILLATOR),
-    ],
+    [("Hebesteine", LEVER), ("levées", LEVER), ("dard", LEVER), ("Rolle", OSCILLATOR), ("plateau", OSCILLATOR)],
 )
 def test_a_feature_hints_at_its_part(name: str, part: str) -> None:
     assert part_of(name) == part

@@ -15,12 +15,7 @@ Array = NDArray[np.float64]
 
 
 def angles(
-    inertia: float,
-    stiffness: float,
-    dry: float,
-    table: Sequence[tuple[float, float]],
-    start: tuple[float, float],
-    times: Array,
+    inertia: float, stiffness: float, dry: float, table: Sequence[tuple[float, float]], start: tuple[float, float], times: Array
 ) -> Array:
     """(n,) rad at the ascending `times` (s); `table` of (s, N·m) over all of them, `start`: angle and velocity."""
     w, (q, u) = math.sqrt(stiffness / inertia), start

@@ -37,11 +37,7 @@ class Harmonic:
 
     def support(self, phi: float) -> tuple[float, float, float]:
         c, s, c2, s2 = math.cos(phi), math.sin(phi), math.cos(2.0 * phi), math.sin(2.0 * phi)
-        return (
-            self.r + self.e * c + self.f * c2,
-            -self.e * s - 2.0 * self.f * s2,
-            -self.e * c - 4.0 * self.f * c2,
-        )
+        return (self.r + self.e * c + self.f * c2, -self.e * s - 2.0 * self.f * s2, -self.e * c - 4.0 * self.f * c2)
 
 
 Curve = Oval | Harmonic

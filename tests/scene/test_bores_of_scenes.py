@@ -341,10 +341,7 @@ def test_one_layer_of_bores_may_serve_several_plates(desk) -> None:
 def test_what_another_body_of_the_drawing_names_is_not_told(desk) -> None:
     put(desk, square(8e-3, layer="WHEEL"), *BORES)
     other = f"[bodies.wheel]\n{HEAD.replace('LEVER', 'WHEEL')}[[bodies.wheel.solids]]\n{BODY_TEXT.replace('LEVER', 'WHEEL')}"
-    assert [message[:6] for message, _ in notices(noticed(desk, BODY_TEXT, more=other))] == [
-        "lever:",
-        "wheel:",
-    ]
+    assert [message[:6] for message, _ in notices(noticed(desk, BODY_TEXT, more=other))] == ["lever:", "wheel:"]
     scene = noticed(desk, BODY_TEXT + 'bores = ["LEVER_BORE"]\n', more=other)
     assert not notices(scene)
     assert {loop.layer for loop in scene.body("lever").decoration} == {"LEVER_BORE"}
@@ -391,10 +388,7 @@ def told(
 ) -> tuple[Finding, ...]:
     outlines = Outlines((square(20e-3, layer="P"), *touching), rest)
     table = Table(
-        {"solids": [{**TOLD, **entry}], "layers": ["P", *(loop.layer for loop in touching)]},
-        "bodies.b",
-        BODY,
-        Faults(),
+        {"solids": [{**TOLD, **entry}], "layers": ["P", *(loop.layer for loop in touching)]}, "bodies.b", BODY, Faults()
     )
     solids = read_solids(table, outlines)
     assert not table.faults.found
@@ -475,12 +469,7 @@ def test_bores_belong_to_the_bodies_of_one_drawing(desk: Any, first: Any, second
 
 
 PIN = Loop((Arc(2e-3, 1e-3, 0.2e-3, 0.0, -math.tau),), "PLATE", hole=True)
-LOOPS = (
-    square(20e-3, layer="PLATE"),
-    PIN,
-    circle(0.3e-3, (5e-3, 1e-3), "STUD"),
-    circle(0.1e-3, (-4e-3, 3e-3), "STUD"),
-)
+LOOPS = (square(20e-3, layer="PLATE"), PIN, circle(0.3e-3, (5e-3, 1e-3), "STUD"), circle(0.1e-3, (-4e-3, 3e-3), "STUD"))
 POINTS = (("AXIS", -1e-3, -2e-3), ("MARK", 3e-3, -6e-3), ("MARK", 7e-3, -6e-3))
 DRAWING = drawing("plate.dxf", LOOPS, points=POINTS)
 

@@ -24,12 +24,8 @@ from watchsim.scene.values import Table
 
 HEAD: dict[str, Any] = {"drawing": "a.dxf", "pivot": "P", "material": {"G": "left"}}
 SOLIDS = [
-    {"layer": "W", "bores": ["H", "A"]},
-    {"layer": "X", "turned": "AXIS"},
-    {"layer": "Y", "hairspring": True},
-    {"layer": "Z", "hairspring": False},
-    {"turned": [[0, 0], [1, 1]]},
-    5,
+    *({"layer": "W", "bores": ["H", "A"]}, {"layer": "X", "turned": "AXIS"}, {"layer": "Y", "hairspring": True}),
+    *({"layer": "Z", "hairspring": False}, {"turned": [[0, 0], [1, 1]]}, 5),
 ]
 LAYERS = ("A", "B", "G", "H", "W", "X", "Y", "Z", "P")
 CLOSED = tuple(square(1e-3, (3e-3 * k, 1e-3), layer) for k, layer in enumerate(LAYERS) if layer != "G")

@@ -146,11 +146,7 @@ def test_a_free_body_has_its_copies_about_the_point_they_were_drawn_around(balan
 
 STAFF = 'layer = "STAFF"\nturned = "AXIS"\ndensity = "8 g/cm³"\n'
 MISUSES = [
-    (
-        'layer = "ROLLER"\n' + FLAT + 'width = "1 mm"\n',
-        "width",
-        "belongs to a hairspring: write hairspring = true as well",
-    ),
+    ('layer = "ROLLER"\n' + FLAT + 'width = "1 mm"\n', "width", "belongs to a hairspring: write hairspring = true as well"),
     ('layer = "ROLLER"\n' + FLAT + "turns = 3\n", "turns", "belongs to a hairspring"),
     ('layer = "ROLLER"\n' + FLAT + "lying = true\n", "lying", "belongs to a turned solid"),
     ('layer = "ROLLER"\n' + FLAT + "count = 2\n", "count", "nothing could touch the copies"),
@@ -383,21 +379,13 @@ REFUSED: list[tuple[Any, list[str]]] = [
     ({**COIL, "inner": "0.02 mm"}, ['0.width = "0.05 mm": there are only 0.04 mm of room']),
     ({**WIRE, "layer": "TWO"}, ['0.layer = "TWO": 2 separate lines are on this layer']),
     ({**WIRE, "layer": "NONE"}, ['0.layer = "NONE": nothing is on this layer']),
-    (
-        {**WIRE, "layer": "PIN"},
-        [
-            "0.width = ",
-        ],
-    ),
+    ({**WIRE, "layer": "PIN"}, ["0.width = "]),
     (
         {**WIRE, "layer": "STRIP", "inner": "1 mm", "turns": 3},
         ['0.inner = "1 mm": the hairspring is drawn', "0.turns = 3: the hairspring is"],
     ),
     ({**WIRE, "turned": "AXIS", "layer": "HALF"}, ["0.turned: a solid is a hairspring or turned", "0.thickness = "]),
-    (
-        {**SHEET, "width": "1 mm", "turns": 3},
-        ["0.turns = 3: turns, width belong to a hairspring"],
-    ),
+    ({**SHEET, "width": "1 mm", "turns": 3}, ["0.turns = 3: turns, width belong to a hairspring"]),
 ]
 
 

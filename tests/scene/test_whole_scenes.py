@@ -209,10 +209,7 @@ def test_a_promise_is_kept_in_the_unit_of_its_value(
 REFUSED = [
     ({"amplitude": {"value": "3 s", "tolerance": "1°"}}, 'expect.amplitude.value = "3 s": "3 s" is a time; here an angle'),
     ({"amplitude": {"value": "3°", "tolerance": "1 s"}}, 'expect.amplitude.tolerance = "1 s": "1 s" is a time; here an angle'),
-    (
-        {"any": {"value": "3 mm", "tolerance": 1}},
-        'expect.any.tolerance = 1: a bare number needs a unit here. Write "1 mm"',
-    ),
+    ({"any": {"value": "3 mm", "tolerance": 1}}, 'expect.any.tolerance = 1: a bare number needs a unit here. Write "1 mm"'),
     (
         {"any": {"value": "0.5 %", "tolerance": 0.03}},
         'expect.any.tolerance = 0.03: a bare number needs a unit here. Write "0.03%"',

@@ -313,8 +313,7 @@ def hammer(folder: Path, back: float, radius: float = 2e-3, centre: float = 0.0)
 
 
 @pytest.mark.parametrize(
-    ("back", "centre", "radius"),
-    [(0.0, 0.0, 2e-3), (0.6, 0.0, 2e-3), (0.6, 2e-3, 2e-3), (0.0, 0.0, 0.1), (0.3, 0.0, 0.1)],
+    ("back", "centre", "radius"), [(0.0, 0.0, 2e-3), (0.6, 0.0, 2e-3), (0.6, 2e-3, 2e-3), (0.0, 0.0, 0.1), (0.3, 0.0, 0.1)]
 )
 def test_an_impulse_rubs_in_the_bearing_by_its_size(tmp_path: Path, back: float, centre: float, radius: float) -> None:
     """In both phases μ r (Λ - m c Δω), c of the centre of mass: compression ends at one speed, expansion gives a share back.

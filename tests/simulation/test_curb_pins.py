@@ -125,11 +125,7 @@ def test_an_open_play_of_the_pins_loses_at_short_arcs_and_the_index_gains() -> N
         ('{ share = 0.03, gap = "-2°" }', "", "must not be negative"),
         ('{ share = 0.03, gap = "20°", offset = "30°" }', "", "no more than gap"),
         ('"20°"', "", "a table is needed"),
-        (
-            '{ share = 0.03, gap = "20°" }',
-            '[[springs]]\nbody = "balance"\nstiffness = "1e-9 N·m/rad"',
-            "several springs",
-        ),
+        ('{ share = 0.03, gap = "20°" }', '[[springs]]\nbody = "balance"\nstiffness = "1e-9 N·m/rad"', "several springs"),
     ],
 )
 def test_pins_that_cannot_be_are_refused(curb: str, more: str, said: str) -> None:

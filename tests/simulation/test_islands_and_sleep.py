@@ -41,16 +41,8 @@ def body(motion: int, first: int, carrier: int = -1) -> SimpleNamespace:
 
 # Coordinates: 0 pivot on the body of 5, 1 to 3 free, 4 slide, 6 to 8 free, 9, 10 and 11 pivots.
 BODIES = [
-    body(PIVOT, 5),
-    body(FREE, 1),
-    body(SLIDE, 4),
-    body(PIVOT, 0, 0),
-    body(FIXED, -1),
-    body(FREE, 6),
-    body(PIVOT, 9),
-    body(FIXED, -1, 0),
-    body(PIVOT, 10),
-    body(PIVOT, 11),
+    *(body(PIVOT, 5), body(FREE, 1), body(SLIDE, 4), body(PIVOT, 0, 0), body(FIXED, -1), body(FREE, 6), body(PIVOT, 9)),
+    *(body(FIXED, -1, 0), body(PIVOT, 10), body(PIVOT, 11)),
 ]
 N = 12
 

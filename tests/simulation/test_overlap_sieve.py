@@ -131,12 +131,8 @@ def star(rng: np.random.Generator, corners: int, size: float, x: float = 0.0) ->
 def shapes(rng: np.random.Generator) -> list[tuple[Loop, ...]]:
     """A few corners, many, arcs, a ring around a hole, two rings, a small disc."""
     return [
-        (star(rng, 7, 2 * MM),),
-        (star(rng, 90, 3 * MM),),
-        (circle(1.5 * MM),),
-        (circle(2 * MM), HOLE),
-        (star(rng, 12, 1 * MM, -2 * MM), star(rng, 12, 1 * MM, 2 * MM)),
-        (circle(0.3 * MM),),
+        *((star(rng, 7, 2 * MM),), (star(rng, 90, 3 * MM),), (circle(1.5 * MM),), (circle(2 * MM), HOLE)),
+        *((star(rng, 12, 1 * MM, -2 * MM), star(rng, 12, 1 * MM, 2 * MM)), (circle(0.3 * MM),)),
     ]
 
 
@@ -274,12 +270,7 @@ def test_a_face_is_behind_another_by_more_than_the_depth(share: float) -> None:
 
 def test_several_pairs_are_looked_at_each_for_itself() -> None:
     """Bodies in any order; each has its own outlines, of unlike numbers of points."""
-    shapes = {
-        "d": (SQUARE,),
-        "a": (circle(1 * MM),),
-        "c": (box(4 * MM, 1 * MM),),
-        "b": (DISC_PAIRS_OF_LAYERS,),
-    }
+    shapes = {"d": (SQUARE,), "a": (circle(1 * MM),), "c": (box(4 * MM, 1 * MM),), "b": (DISC_PAIRS_OF_LAYERS,)}
     names = [("d", "a"), ("c", "b"), ("a", "c"), ("b", "d")]
     pairs = [
         PairOfLayers(k, (Side(p), Side(q)), (shapes[p], shapes[q]), DEPTH_PAIRS_OF_LAYERS / 8) for k, (p, q) in enumerate(names)

@@ -147,11 +147,7 @@ def test_a_carried_body_is_freed_too() -> None:
         ),
     )
     scene = Scene(
-        "carried",
-        bodies,
-        torques=(Torque("arm", -1e-9),),
-        contacts=(Contact((Side("arm"), Side("stop"))),),
-        duration=0.05,
+        "carried", bodies, torques=(Torque("arm", -1e-9),), contacts=(Contact((Side("arm"), Side("stop"))),), duration=0.05
     )
     done = simulate(scene)
     assert done.stop == Stop.DURATION

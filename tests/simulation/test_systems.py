@@ -154,10 +154,7 @@ def test_where_one_cannot_go_on_the_others_end_with_it(first: bool, room: int, m
 
 JOINED: dict[str, Callable[[Scene], Scene]] = {
     "contact": lambda scene: replace(scene, contacts=(*scene.contacts, Contact((Side("wheel 0"), Side("wheel 1"))))),
-    "spring": lambda scene: replace(
-        scene,
-        springs=(*scene.springs, Spring("balance 0", 1e-9, against="balance 1")),
-    ),
+    "spring": lambda scene: replace(scene, springs=(*scene.springs, Spring("balance 0", 1e-9, against="balance 1"))),
     "line spring": lambda scene: replace(
         scene, line_springs=(LineSpring(("balance 0", "balance 1"), ((0.0, 0.0), (0.0, 0.0)), 1e-9, 0.0),)
     ),

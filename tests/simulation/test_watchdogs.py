@@ -168,10 +168,7 @@ def test_equal_pendulums_that_meet_at_their_lowest_point_go_on_together() -> Non
         "centre_of_mass": (0.0, -length),
         "loops": (circle(radius, (0.0, -length)),),
     }
-    bodies = (
-        Body("a", "pivot", (0.0, 0.0), -1.0, **bob),
-        Body("b", "pivot", (2.0 * radius, 0.0), 0.0, **bob),
-    )
+    bodies = (Body("a", "pivot", (0.0, 0.0), -1.0, **bob), Body("b", "pivot", (2.0 * radius, 0.0), 0.0, **bob))
     scene = Scene("pendulums", bodies, contacts=touching("a", "b"), duration=1.0, gravity=(0.0, -gravity))
     for tolerance in (1e-7, 1e-9, 1e-12):
         done = simulate(scene, tolerance=tolerance)

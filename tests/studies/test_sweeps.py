@@ -256,13 +256,7 @@ def test_no_earlier_picture_stands_beside_new_rows(bench, tmp_path):
 @pytest.mark.skipif(sys.platform != "linux", reason="finds children in /proc")
 def test_a_killed_worker_costs_nothing(tmp_path):
     asked = [
-        "sweep",
-        str(BENCH),
-        "torques.0.value=-5:-8:40 µN·m",
-        "--no-plots",
-        "--workers",
-        "2",
-        "-o",
+        *("sweep", str(BENCH), "torques.0.value=-5:-8:40 µN·m", "--no-plots", "--workers", "2", "-o"),
         str(tmp_path / "study"),
     ]
     command = [sys.executable, "-m", "watchsim", *asked]
@@ -326,8 +320,7 @@ def values(text):
 
 
 @pytest.mark.parametrize(
-    "told",
-    ["-4:-8:3 µN·m", "-4 µN·m:-8 µN·m:3", "-4e-3 mN·m : -8 µN·m : 3", "-4,-6,-8 µN·m", "-4 µN·m,-6 µN·m, -0.008 mN·m"],
+    "told", ["-4:-8:3 µN·m", "-4 µN·m:-8 µN·m:3", "-4e-3 mN·m : -8 µN·m : 3", "-4,-6,-8 µN·m", "-4 µN·m,-6 µN·m, -0.008 mN·m"]
 )
 def test_units_at_either_end(told):
     assert values(f"torques.0.value={told}") == pytest.approx([-4e-6, -6e-6, -8e-6], rel=1e-12)
