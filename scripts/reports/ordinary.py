@@ -17,9 +17,18 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / "tests"), str(ROOT / "tests" / "ordinary")]
 
-from flat_cams import compared  # noqa: E402
+from flat_cams import (  # noqa: E402
+    ANGLES,
+    FRICTIONS,
+    RESTITUTIONS,
+    TOLERANCES,
+    bar_for,
+    beyond,
+    compared,
+    expected,
+    off,
+)
 from gear_scenes import TEETH, contact_ratio, gear_scene, train  # noqa: E402
-from kinked_scenes import ANGLES, FRICTIONS, RESTITUTIONS, TOLERANCES, bar_for, beyond, expected, off  # noqa: E402
 from mean_speed import mean_speed  # noqa: E402
 from mechanisms import MECHANISMS, TOLERANCE, mechanism  # noqa: E402
 from orientations import apart, random_pose, seen  # noqa: E402
@@ -41,7 +50,7 @@ compression ends with both bodies at rest, stuck at both faces, so that the laws
 speeds must follow from one of the possible splits (a linear program over the impulses). Energy: the residual over the kinetic energy.
 
 A run counts as wrong beyond 1e-9 + 20 tolerances + what two rules cost (`allowed` in
-`tests/ordinary/kinked_scenes.py`): rebounds that end within 1 µs are ended at once, and concave joints too flat for
+`tests/ordinary/flat_cams.py`): rebounds that end within 1 µs are ended at once, and concave joints too flat for
 an impact are passed as tangent, without the friction of that impact: Δu/u = m_f/m d (μ + d), m_f the mass of the
 follower as seen by the contact.
 

@@ -8,8 +8,18 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from analysis.made_beats import IMPULSE, LOCKING, PIN, balance_only, steady_swings
-from analysis.made_faults import chipped, eccentric, knocked, swiss, unguarded
+from analysis.made_beats import (
+    IMPULSE,
+    LOCKING,
+    PIN,
+    balance_only,
+    chipped,
+    eccentric,
+    knocked,
+    steady_swings,
+    swiss,
+    unguarded,
+)
 from numpy.typing import NDArray
 from scipy.io import wavfile
 

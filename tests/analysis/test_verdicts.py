@@ -8,11 +8,26 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from analysis.made_beats import DEGREE, PERIOD, Events, balance_only, lever_run, lever_scene, polygon, star
-from analysis.made_faults import chipped, knocked, renamed, swiss, toothless, turned_over, unguarded
+from analysis.made_beats import (
+    DEGREE,
+    PERIOD,
+    Events,
+    balance_only,
+    chipped,
+    knocked,
+    lever_run,
+    lever_scene,
+    polygon,
+    renamed,
+    star,
+    swiss,
+    toothless,
+    turned_over,
+    unguarded,
+)
 from escapement.made import one_faced_anchor
 from every_time import few
-from profiles.led_wheel import polygon as outline
+from profiles.running import polygon as outline
 from scipy.integrate import quad
 from scipy.optimize import brentq
 from shapely import affinity

@@ -9,9 +9,8 @@ from unittest.mock import patch
 
 import numpy as np
 import pytest
-from carried_scenes import ARRANGEMENTS, carried_scene, places
 from every_time import few
-from pair_scenes import DEGREES, body_pose, outline, two_bodies
+from pair_scenes import ARRANGEMENTS, DEGREES, body_pose, carried_scene, outline, places, two_bodies
 from true_contacts import touches
 
 from watchsim.contact import cells as cell_grid

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from watchsim.cli import main
-from watchsim.commands.console import BAD_INPUT, FINE
+from watchsim.commands.console import BAD_INPUT, FINE, GAVE_UP
 from watchsim.commands.inputs import load_scene, record_size, room_for
 from watchsim.paths import profiles_dir
 from watchsim.render.opening import last_beats
@@ -134,3 +134,38 @@ def test_a_plot_that_fails_costs_a_line_only(capsys, tmp_path, monkeypatch) -> N
     assert main(["run", SCENE, "--duration", "0.1 s", "-o", str(tmp_path / "r")]) == FINE
     assert "kinematics.png could not be drawn: no ink" in capsys.readouterr().err
     assert (tmp_path / "r" / "trajectory.npz").is_file() and not list((tmp_path / "r" / "plots").iterdir())
+
+
+# Does a run that ends in a jam say so, with status 3, and no fault of the program behind it?
+
+JAM = """
+[bodies.pusher]
+circle = "2 mm"
+motion = "driven"
+velocity = "90 °/s"
+pivot = ["-5 mm", "0 mm"]
+[bodies.lever]
+polygon = [["-1 mm", "-1 mm"], ["9 mm", "-1 mm"], ["9 mm", "1 mm"], ["-1 mm", "1 mm"]]
+position = ["0 mm", "7 mm"]
+inertia = "1 g·cm²"
+[bodies.bank]
+circle = "1 mm"
+position = ["6 mm", "9.5 mm"]
+motion = "fixed"
+[[contacts]]
+between = ["pusher", "lever"]
+[[contacts]]
+between = ["lever", "bank"]
+[run]
+duration = "2 s"
+"""
+
+
+def test_a_driven_body_that_jams_another_is_named_in_words(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "scene.toml").write_text(JAM, encoding="utf-8")
+    assert main(["run", str(tmp_path), "--no-plots", "-o", str(tmp_path / "run")]) == GAVE_UP
+    said = capsys.readouterr().err
+    assert "pusher, which is driven, leaves lever no way out" in said
+    assert "This is a jam" in said
+    assert "complementarity" not in said
+    assert "fault of watchsim" not in said

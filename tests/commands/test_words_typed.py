@@ -5,6 +5,7 @@ import importlib
 import io
 import math
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -13,6 +14,7 @@ import pytest
 
 from watchsim.cli import COMMANDS, CommandParser, main
 from watchsim.commands import console
+from watchsim.commands.completion import SHELLS
 from watchsim.paths import profiles_dir
 
 ANSWERS = [  # what was typed, whose usage is shown, what is said
@@ -144,3 +146,37 @@ def test_only_a_terminal_breaks_lines_and_never_json() -> None:
     assert max(map(len, json_text.split("\n"))) > 140
     plain = subprocess.run([sys.executable, "-c", said], capture_output=True, check=True, text=True)
     assert len(plain.stdout.split("\n")[0]) == 150
+
+
+# Do shells complete commands, and the paths of a scene behind --set?
+
+
+@pytest.mark.skipif(shutil.which("bash") is None, reason="needs bash")
+@pytest.mark.parametrize(
+    ("words", "found"),
+    [("sche", "schema"), ("run a --set design.lo", "design.lock="), ("check a --set torques.0.v", "torques.0.value=")],
+)
+def test_bash_completes(words, found, tmp_path, capsys):
+    assert main(["new", "swiss_lever", "-o", str(tmp_path / "a")]) == 0
+    capsys.readouterr()
+    assert main(["schema", "--completion", "bash"]) == 0
+    (tmp_path / "script").write_text(capsys.readouterr().out, encoding="utf-8")
+    typed = (
+        f"COMP_WORDS=(watchsim {words}); COMP_CWORD={len(words.split())}; _shtab_watchsim; printf '%s\\n' \"${{COMPREPLY[@]}}\""
+    )
+    path = f"{Path(sys.executable).parent}:{os.environ['PATH']}"
+    made = subprocess.run(
+        ["bash", "-c", f". ./script; {typed}"],
+        cwd=tmp_path,
+        env={**os.environ, "PATH": path},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert made.stdout.split() == [found]
+
+
+@pytest.mark.parametrize("shell", SHELLS)
+def test_each_shell_has_a_script_with_paths_with_and_without_the_command(shell, capsys):
+    assert [main([*words, "--completion", shell]) for words in (["schema"], [])] == [0, 0]
+    assert capsys.readouterr().out.count(" schema --paths") == 2

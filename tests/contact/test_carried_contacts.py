@@ -6,11 +6,10 @@ import math
 
 import numpy as np
 import pytest
-from carried_scenes import ARRANGEMENTS, carried_scene, places
 from every_time import few
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from pair_scenes import outline
+from pair_scenes import ARRANGEMENTS, carried_scene, outline, places
 from true_contacts import touches
 
 from watchsim.contact.cell_lookup import ALL, candidate, candidates, time_in_cell

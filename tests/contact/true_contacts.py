@@ -8,9 +8,8 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-from carried_scenes import places
 from numpy.typing import NDArray
-from pair_scenes import body_pose
+from pair_scenes import body_pose, places
 
 from watchsim.mechanism.compile import Compiled
 from watchsim.model import FULL, LINE

@@ -18,8 +18,7 @@ from every_time import few
 from ezdxf.disassemble import recursive_decompose
 from ezdxf.document import Drawing as EzDrawing
 from hypothesis import HealthCheck, given, settings
-from made_outlines import parts
-from same_outlines import compare, same_edge
+from made_outlines import compare, parts, same_edge
 from scipy import constants as c
 
 from watchsim.drawing.drawing import Drawing

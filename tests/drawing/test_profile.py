@@ -12,8 +12,7 @@ import pytest
 import svg_text as s
 from hypothesis import given
 from hypothesis import strategies as st
-from made_outlines import parts
-from same_outlines import compare
+from made_outlines import compare, parts
 from trimesh.path import Path2D, entities
 
 import watchsim as ws

@@ -12,9 +12,8 @@ import pytest
 import svg_text as s
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from made_outlines import parts
+from made_outlines import compare, parts, same_edge
 from naive import svg_curve
-from same_outlines import compare, same_edge
 
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.projection import Conic, Shape, Spline, Straight

@@ -166,52 +166,38 @@ def last_impact(run):
     return row, row + 1
 
 
-def test_dead_stop_at_an_impact():
-    """All motion set to zero where bodies touch takes energy, as impacts may, but no pushing impulse does it."""
-    run = simulate(two_discs_books())
-    row, _ = last_impact(run)
+def slowed(run, factor):
+    """All velocities after the last impact times a factor."""
     u = run.u.copy()
-    u[row + 1 :] = 0.0
-    assert "impulse" in classes(replace(run, u=u))
+    u[last_impact(run)[1] :] *= factor
+    return replace(run, u=u)
 
 
-def test_stop_without_an_event():
-    run = simulate(two_discs_books())
-    row, _ = last_impact(run)
-    gone = run.events[run.events["t"] != run.t[row]]
-    assert "jump" in classes(replace(run, events=gone))
-
-
-def test_energy_from_nowhere():
-    run = simulate(pendulum())
-    row, _ = last_impact(run)
-    u = run.u.copy()
-    u[row + 1 :] *= 1.5
-    assert "energy" in classes(replace(run, u=u))
-
-
-def test_ledger_that_does_not_close():
-    run = simulate(pendulum())
-    assert "residual" in classes(replace(run, energy={**run.energy, "residual_J": 1e-3}))
-
-
-def test_material_in_material():
-    run = simulate(falling_block())
+def displaced(run, first, column, by):
     q = run.q.copy()
-    q[:, 1] -= 1e-5
-    assert "overlap" in classes(replace(run, q=q))
+    q[first:, column] += by
+    return replace(run, q=q)
 
 
-def test_bodies_that_are_moved():
-    run = simulate(falling_block())
-    row, _ = last_impact(run)
-    q = run.q.copy()
-    q[row + 1 :, 0] += 1e-7
-    assert "shift" in classes(replace(run, q=q))
+def without_its_impact(run):
+    return replace(run, events=run.events[run.events["t"] != run.t[last_impact(run)[0]]])
 
 
-def test_giving_up():
-    assert "gave up" in classes(replace(simulate(pendulum()), stop=Stop.TOO_MANY_EVENTS))
+SPOILT = {  # class of the fault: the mechanism, and what is done to its run
+    "impulse": (two_discs_books, lambda run: slowed(run, 0.0)),  # takes energy, as impacts may, but no pushing impulse does it
+    "jump": (two_discs_books, without_its_impact),
+    "energy": (pendulum, lambda run: slowed(run, 1.5)),
+    "residual": (pendulum, lambda run: replace(run, energy={**run.energy, "residual_J": 1e-3})),
+    "overlap": (falling_block, lambda run: displaced(run, 0, 1, -1e-5)),
+    "shift": (falling_block, lambda run: displaced(run, last_impact(run)[1], 0, 1e-7)),
+    "gave up": (pendulum, lambda run: replace(run, stop=Stop.TOO_MANY_EVENTS)),
+}
+
+
+@pytest.mark.parametrize("fault", SPOILT)
+def test_what_is_spoilt_is_named(fault):
+    make, spoil = SPOILT[fault]
+    assert fault in classes(spoil(simulate(make())))
 
 
 def test_energy_of_a_pendulum_is_that_of_its_fall():

@@ -6,9 +6,8 @@ from collections.abc import Callable
 import mpmath
 import numpy as np
 import pytest
-from reference.cam import Piece
-from simulation.cam_scenes import ECCENTRIC, cam_scene
-from simulation.moving_scenes import profile
+from reference.flat_cam import Piece
+from simulation.moving_scenes import ECCENTRIC, cam_scene, profile
 
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Edge, Line, moved

@@ -8,8 +8,8 @@ import dataclasses
 import math
 from collections.abc import Callable
 
+from flat_cams import bar_for, kinked_scene
 from gear_scenes import gear_scene
-from kinked_scenes import bar_for, kinked_scene
 from simulation.moving_scenes import box, circle, ground, polygon, profile, touching
 
 from watchsim.geometry.loops import Loop

@@ -6,9 +6,8 @@ import math
 import numpy as np
 import pytest
 from every_time import few
-from flat_cams import compared
+from flat_cams import ANGLES, FRICTIONS, RESTITUTIONS, TOLERANCES, bar_for, beyond, compared, expected, kinked_scene, off
 from gear_scenes import TEETH, contact_ratio, gear_scene, train
-from kinked_scenes import ANGLES, FRICTIONS, RESTITUTIONS, TOLERANCES, bar_for, beyond, expected, kinked_scene, off
 from mean_speed import mean_speed, tooth_times
 from mechanisms import MECHANISMS, mechanism
 from orientations import apart, posed, random_pose, seen

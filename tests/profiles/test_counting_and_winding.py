@@ -10,7 +10,7 @@ import math
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from profiles.led_wheel import polygon
+from profiles.running import polygon
 from scipy.optimize import brentq
 from shapely import affinity
 from shapely.geometry import LinearRing, Point, Polygon
@@ -19,7 +19,6 @@ from shapely.geometry import Point as Spot
 import watchsim as ws
 from watchsim import designs
 from watchsim.construction.geneva_stop import GenevaStop
-from watchsim.construction.registry import design
 from watchsim.simulation.state import EventKind
 from watchsim.simulation.trajectory import Trajectory
 
@@ -81,15 +80,6 @@ def test_other_numbers_of_slots(slots, lock, friction, load):
     assert locked < math.radians(0.5)
 
 
-def test_what_does_not_fit_is_told():
-    with pytest.raises(ws.SceneError, match="run into each other"):
-        designs.geneva(slots=3, pin_radius="2 mm")
-    with pytest.raises(ws.SceneError, match="the pin stands beside the disc"):
-        designs.geneva(lock_radius="8.6 mm")
-    with pytest.raises(ws.SceneError, match="does not reach into the wheel"):
-        designs.geneva(lock_radius="3 mm")
-
-
 def wound(turns: int, hand: str) -> Trajectory:
     """Turned to the stop, without mainspring, from a start a quarter of a turn past the lower stop."""
     made = designs.geneva_stop(turns=turns, mainspring="0.001 mN·m")
@@ -142,18 +132,6 @@ def test_the_stop_holds_what_the_hand_has_more_than_the_mainspring():
         arm = point - np.array(run.scene.body("arbor").position)
         moment += (-1.0 if name == "arbor" else 1.0) * float(arm[0] * force[1] - arm[1] * force[0])
     assert moment == pytest.approx(-asked, rel=1e-6)
-
-
-@pytest.mark.parametrize(
-    ("chosen", "blamed"),
-    [
-        ({"hand": 5.0}, "hand"),
-        ({"lock_radius": 1.4}, "lock_radius"),
-        ({"pin_radius": 0.5, "turns": 3, "lock_radius": 0.9, "bottom_play": 0.9}, "pin_radius"),
-    ],
-)
-def test_conflicts_name_what_to_change_first(chosen, blamed):
-    assert blamed in [one.dimension for one in design("geneva_stop").refusals(chosen)]
 
 
 BEAK, LENGTH = 0.4e-3, 6e-3
@@ -215,17 +193,6 @@ def test_what_the_finger_takes_is_what_the_spring_gets() -> None:
     assert torque == pytest.approx(expected, rel=1e-3)
 
 
-def test_what_does_not_fit_is_refused() -> None:
-    with pytest.raises(ws.SceneError, match="root radius"):
-        designs.jumper(depth="3.5 mm")
-    with pytest.raises(ws.SceneError, match="does not fit between"):
-        designs.jumper(teeth=16, pin_radius="0.45 mm")
-    with pytest.raises(ws.SceneError, match="does not carry a tooth that far"):
-        designs.jumper(crank="1 mm")
-    with pytest.raises(ws.SceneError, match="too large to lie"):
-        designs.jumper(beak_radius="3 mm")
-
-
 @pytest.mark.parametrize(
     "changed",
     [
@@ -263,15 +230,6 @@ def test_the_torque_of_the_mainspring_rests_on_the_click() -> None:
     assert ((x - px) * push[:, 1] - (y - py) * push[:, 0]).sum() == pytest.approx(-held, rel=1e-9)
 
 
-def test_what_does_not_fit_is_refused_ratchet() -> None:
-    with pytest.raises(ws.SceneError, match="else the click lies in the teeth"):
-        designs.ratchet(click_angle="75°")
-    with pytest.raises(ws.SceneError, match="does not wind the mainspring"):
-        designs.ratchet(winding="0.5 mN·m")
-    with pytest.raises(ws.SceneError, match="does not reach deep enough"):
-        designs.ratchet(nose_radius="0.4 mm")
-
-
 def test_it_sleeps_once_the_hand_has_let_go() -> None:
     """The torque of the hand is a table over time; behind its last knot nothing changes any more, and no step is needed."""
     scene = ws.load(ws.profiles_dir() / "ratchet")
@@ -281,7 +239,6 @@ def test_it_sleeps_once_the_hand_has_let_go() -> None:
 
 
 R, LENGTH_WINDING_CLICK, NOSE, APART = 3.0, 2.0, 0.1, 4.75  # mm, the defaults: 3 + 2 + 0.1 - 0.35
-UNDERCUT, BANK = math.radians(10.0), math.radians(2.0)
 Array = NDArray[np.float64]
 
 
@@ -365,22 +322,6 @@ def test_time_stepping_agrees() -> None:
         stepped = ws.simulate(scene, method="moreau", step=step)
         assert np.abs(stepped.at(0.12)[0] - true.at(0.12)[0]).max() < close
         assert stepped.end_q == pytest.approx(true.end_q, abs=1e-5)
-
-
-REFUSED = [
-    ({"reach": "0.6 mm"}, "else the nose meets the roots"),
-    ({"bank": "-30°"}, "the nose is out of the teeth"),
-    ({"winding": "0.5 mN·m"}, "does not wind the mainspring"),
-    ({"teeth": 40, "nose_radius": "0.2 mm"}, "meets the back of a tooth"),
-    ({"nose_radius": "0.5 mm"}, "does not meet a locking face"),
-    ({"bank": "-22°"}, "does not meet a locking face"),
-]
-
-
-@pytest.mark.parametrize(("changed", "why"), REFUSED)
-def test_what_does_not_fit_is_refused_winding_click(changed: dict[str, str], why: str) -> None:
-    with pytest.raises(ws.SceneError, match=why):
-        designs.winding_click(**changed)
 
 
 TOOTH, HOUR, FREE, REST = math.radians(2.5), 0.5, 0.125, 0.29  # rad; s: let go, at rest on a step
@@ -482,24 +423,6 @@ def test_it_counts_the_same_hours_again_in_the_next_turn() -> None:
     q = run.sample(hours * HOUR + REST)[0]
     assert q[:, 1] == pytest.approx(TOOTH * (hours % 12 + 1), abs=1e-9)
     assert np.abs(run.sample(hours * HOUR + 0.45)[0][:, 1]).max() < 1e-9  # gathered up each time
-
-
-REFUSED_SNAIL = [
-    ({"tail": "16 mm", "least": "5 mm"}, "find room on step 1 "),
-    ({"tail": "10 mm"}, "does not bring the pin to the lowest step"),
-    ({"leaf_force": "15 mN"}, "the leaf slackens before the lowest step"),
-    ({"lifting": "0.13 mN·m"}, "to gather the rack up"),
-    ({"hour": "0.2 s"}, "no time to come to rest"),
-    ({"tail": "24.5 mm", "least": "5 mm"}, "find room on step 12"),
-    ({"pin_radius": "1.6 mm"}, "find room on step 12"),
-    ({"tooth": "4.5°", "least": "2 mm", "leaf_force": "80 mN", "lifting": "1 mN·m"}, "would reach the rack's axis"),
-]
-
-
-@pytest.mark.parametrize(("changed", "why"), REFUSED_SNAIL)
-def test_what_does_not_fit_is_refused_snail(changed: dict[str, str], why: str) -> None:
-    with pytest.raises(ws.SceneError, match=why):
-        designs.snail(**changed)
 
 
 R_CAM, E, END, MASS, FORCE, RATE = 5e-3, 1.5e-3, 1e-3, 2e-3, 0.2, 100.0  # SI, the design's defaults

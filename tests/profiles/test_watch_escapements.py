@@ -5,14 +5,12 @@ import math
 import numpy as np
 import pytest
 from every_time import few
-from profiles.led_wheel import DAY, Led, work_and_rate
-from profiles.running import check_running, of_profile, stepping_errors
+from profiles.running import DAY, Led, of_profile, work_and_rate
 
 import watchsim as ws
 from watchsim import designs
 from watchsim.analysis.phases import phases
 from watchsim.analysis.timeline import shown_beats
-from watchsim.construction import registry as known
 from watchsim.construction.cylinder import Cylinder, Shell, shell
 from watchsim.construction.detent import Detent, Points
 from watchsim.construction.duplex import Duplex, DuplexPoints
@@ -24,9 +22,7 @@ from watchsim.scene.scene import Scene
 from watchsim.simulation.state import EventKind
 from watchsim.simulation.trajectory import Trajectory
 
-DETENT = known.design("detent")
 POINTS = Points(Detent())
-PROFILE = "detent"
 
 
 @pytest.fixture(scope="module")
@@ -95,49 +91,6 @@ def test_a_balance_that_swings_too_far_unlocks_twice():
     """Beyond a turn less the angle at which the stone meets the leaf it comes round to it again: the watch trips."""
     run = ws.simulate(designs.detent().scene().set("bodies.balance.angle", "-345°"), duration=4.0)
     assert ws.verdict(run).name == "trips" and ws.summary(run)["missed_beats"] > 0
-
-
-@pytest.mark.parametrize(
-    ("chosen", "blamed"),
-    [
-        ({"friction": 0.2, "draw": 10.0}, "draw"),
-        ({"undercut": 18.0, "draw": 18.0}, "undercut"),
-        ({"teeth": 18, "reach": 10.5}, "reach"),
-        ({"travel": 2.0, "lock": 1.2, "clearance": 1.0}, "travel"),
-        ({"tip_radius": 2.0, "discharge_radius": 0.3}, "discharge_radius"),
-        ({"tip_radius": 20.0}, "tip_radius"),
-    ],
-)
-def test_conflicts_name_what_to_change_first(chosen, blamed):
-    found = DETENT.refusals(chosen)
-    assert blamed in [one.dimension for one in found]
-
-
-@pytest.mark.slow
-def test_five_minutes():
-    run = ws.simulate(ws.load(ws.profiles_dir() / PROFILE / "scene.toml"), duration=300.0)
-    assert ws.summary(run)["missed_beats"] == 0 and teeth(run) == pytest.approx(600.0, abs=1e-2)
-    assert abs(run.energy["residual_relative"]) < 1e-9 and run.worst_penetration < 1e-9
-
-
-@pytest.mark.slow
-def test_time_stepping_comes_to_the_same():
-    scene = designs.detent().scene()
-    true = ws.beats(ws.simulate(scene, duration=2.0, tolerance=1e-11)).amplitude_deg
-    off = [
-        float(np.abs(ws.beats(ws.simulate(scene, duration=2.0, method="moreau", step=step)).amplitude_deg - true).max())
-        for step in (1.6e-5, 4e-6)
-    ]
-    assert off[1] < 2e-3 and off[1] < off[0]
-
-
-def test_twenty_seconds():
-    check_running(of_profile("cylinder", 20.0), 24.0, 100.0)
-
-
-@pytest.mark.slow
-def test_five_minutes_cylinder():
-    check_running(of_profile("cylinder", 300.0), 24.0, 1500.0)
 
 
 def led(made: Shell, scene: ws.Scene) -> list[tuple[np.ndarray, np.ndarray]]:
@@ -213,33 +166,6 @@ def test_friction_lowers_amplitude_and_rate():
     assert rough.amplitude_deg < strong.amplitude_deg - 25.0 and rough.rate_s_per_d < strong.rate_s_per_d
 
 
-@pytest.mark.parametrize(
-    ("chosen", "blamed"),
-    [
-        *(({"tooth_width": 11.0}, "tooth_width"), ({"tooth_width": 10.55}, "tooth_width"), ({"drop": 1.0}, "drop")),
-        *(({"lift": 20.0, "friction": 0.25}, "lift"), ({"start": 40.0, "lift": 70.0}, "start"), ({"torque": 5.0}, "torque")),
-        ({"torque": 0.004}, "torque"),
-    ],
-)
-def test_conflicts_name_what_to_change_first_cylinder(chosen, blamed):
-    assert blamed in [one.dimension for one in design("cylinder").refusals(chosen)]
-
-
-@pytest.mark.slow
-def test_time_stepping_comes_to_the_same_cylinder():
-    coarse, fine = stepping_errors(designs.cylinder().scene(), 2.0, (1.6e-5, 4e-6))
-    assert fine < 3e-3 and fine < 0.5 * coarse
-
-
-def test_twenty_seconds_duplex():
-    check_running(of_profile("duplex", 20.0), 24.0, 100.0)
-
-
-@pytest.mark.slow
-def test_five_minutes_duplex():
-    check_running(of_profile("duplex", 300.0), 24.0, 1500.0)
-
-
 @pytest.fixture(scope="module")
 def ticking_duplex() -> ws.Trajectory:
     return of_profile("duplex", 4.0)
@@ -301,28 +227,6 @@ def test_friction_at_rest_holds_the_amplitude_down():
 
 
 @pytest.mark.parametrize(
-    ("chosen", "blamed"),
-    [
-        ({"reach": 10.0}, "reach"),
-        ({"drop": 3.0, "reach": 6.0}, "drop"),
-        ({"drop": 16.0, "reach": 6.0, "intersection": 30.0}, "drop"),
-        ({"intersection": 12.0, "friction": 0.2}, "intersection"),
-        ({"notch": 40.0}, "undercut"),
-        ({"teeth": 16, "reach": 7.0}, "undercut"),
-        ({"start": 280.0, "letting_go": -30.0}, "start"),
-    ],
-)
-def test_conflicts_name_what_to_change_first_duplex(chosen, blamed):
-    assert blamed in [one.dimension for one in design("duplex").refusals(chosen)]
-
-
-@pytest.mark.slow
-def test_time_stepping_comes_to_the_same_duplex():
-    coarse, fine = stepping_errors(designs.duplex().scene(), 2.0, (1.6e-5, 4e-6))
-    assert fine < 8e-3 and fine < 0.5 * coarse
-
-
-@pytest.mark.parametrize(
     "chosen",
     few([{}, {"lock": 2.5, "lift": 8.5, "drop": 3.4, "draw": 14.0}, {"teeth": 18, "pallet_pin": 0.2, "lift_angle": 46.0}], 1),
 )
@@ -344,15 +248,6 @@ def test_led_by_hand_it_has_the_angles_chosen(chosen):
     assert [one.code for one in judgements(scene, found) if one.severity == "warning"] == []
 
 
-def test_twenty_seconds_pin_pallet():
-    check_running(of_profile("pin_pallet", 20.0), 24.0, 100.0)
-
-
-@pytest.mark.slow
-def test_five_minutes_pin_pallet():
-    check_running(of_profile("pin_pallet", 300.0), 24.0, 1500.0)
-
-
 def test_the_amplitude_goes_as_the_root_of_the_drive():
     """Free but for the lift: A ∝ √T, were there no losses that grow less than the drive; and a weaker drive loses more."""
     weak, strong = (ws.steady(designs.pin_pallet(torque=f"{torque} µN·m").scene()) for torque in (1.4, 2.8))
@@ -365,24 +260,6 @@ def test_without_draw_friction_holds_the_lever_where_it_is():
         designs.pin_pallet(friction=0.25)
 
 
-@pytest.mark.parametrize(
-    ("chosen", "blamed"),
-    [
-        ({"embraced": 2.0}, "embraced"),
-        ({"teeth": 21, "embraced": 1.5}, "embraced"),
-        ({"pallet_pin": 0.6}, "guard_freedom"),
-        ({"drop": 1.5}, "drop"),
-        ({"pallet_pin": 1.0}, "pallet_pin"),
-        ({"guard_freedom": 2.4}, "guard_freedom"),
-        ({"lock": 0.5, "guard_freedom": 0.5}, "lock"),
-        ({"crescent": 15.0}, "crescent"),
-        ({"tip_radius": 20.0}, "tip_radius"),
-    ],
-)
-def test_conflicts_name_what_to_change_first_pin_pallet(chosen, blamed):
-    assert blamed in [one.dimension for one in design("pin_pallet").refusals(chosen)]
-
-
 def test_the_drop_that_is_asked_for_is_just_enough():
     """Then the wheel can be turned back by next to nothing as a pin is about to be unlocked."""
     (conflict,) = design("pin_pallet").refusals({"drop": 1.5})
@@ -390,12 +267,6 @@ def test_the_drop_that_is_asked_for_is_just_enough():
     enough = measure(designs.pin_pallet(drop=f"{needed + 0.01} °").scene())
     assert enough.pallets is not None
     assert 0.0 <= min(math.degrees(one.shake.value) for one in enough.pallets) < 0.2
-
-
-@pytest.mark.slow
-def test_time_stepping_comes_to_the_same_pin_pallet():
-    coarse, fine = stepping_errors(designs.pin_pallet().scene(), 2.0, (1.6e-5, 4e-6))
-    assert fine < 0.01 and fine < 0.5 * coarse
 
 
 OFF = "5 µm"  # of the balance's centre of mass

@@ -10,8 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from analysis.made_beats import PERIOD, PIN, balance_only, steady_swings
-from analysis.made_faults import swiss
+from analysis.made_beats import PERIOD, PIN, balance_only, steady_swings, swiss
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from matplotlib.backends.backend_agg import FigureCanvasAgg

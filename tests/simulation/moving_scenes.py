@@ -3,13 +3,21 @@
 import dataclasses
 import functools
 import math
+from collections.abc import Sequence
 from pathlib import Path
+from types import SimpleNamespace
 
+import numpy as np
+from numpy.typing import NDArray
+from reference.flat_cam import Drive, Piece, start
+
+from watchsim.contact.gaps import Closed, closed_contacts
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Arc, Edge, Line, Point
-from watchsim.scene.forces import Contact, Side
+from watchsim.scene.forces import Contact, Side, Spring, Torque
 from watchsim.scene.load import load
 from watchsim.scene.scene import Body, Scene
+from watchsim.simulation.scratch import Projection, _projection_room
 from watchsim.simulation.state import EventKind
 from watchsim.simulation.trajectory import Trajectory
 
@@ -109,3 +117,76 @@ def mirrored(scene: Scene) -> Scene:
     torques = tuple(dataclasses.replace(torque, value=-torque.value) for torque in scene.torques)
     gravity = (-scene.gravity[0], scene.gravity[1])
     return dataclasses.replace(scene, bodies=tuple(bodies), springs=springs, torques=torques, gravity=gravity)
+
+
+# Which cams made of many tangent arcs have a motion that is known?
+
+DRIVE = Drive(inertia=2e-8, torque=1e-8, roller=0.4e-3, mass=1e-5, stiffness=2.0, rest=-2e-3)
+RATE = 25.0
+ECCENTRIC = (Piece(0.2e-3, 0.05e-3, 1.1e-3, 0.0, 2.0 * math.pi),)
+
+
+def cam_outline(pieces: Sequence[Piece], cuts: int) -> Loop:
+    """Each piece cut into `cuts` tangent arcs."""
+    edges = []
+    for piece in pieces:
+        step = (piece.last - piece.first) / cuts
+        edges += [Arc(piece.x, piece.y, piece.radius, piece.first + i * step, step) for i in range(cuts)]
+    return Loop(tuple(edges))
+
+
+def cam_scene(pieces: Sequence[Piece], cuts: int, duration: float, friction: float = 0.0, angle: float = 0.3) -> Scene:
+    """The cam turns from `angle` at RATE; the roller stands on it."""
+    height, speed = start(tuple(pieces), DRIVE, angle, RATE)
+    roller = Loop((Arc(0.0, 0.0, DRIVE.roller, 0.0, 2.0 * math.pi),))
+    bodies = (
+        Body("cam", "pivot", (0.0, 0.0), angle, velocity=(RATE,), inertia=DRIVE.inertia, loops=(cam_outline(pieces, cuts),)),
+        Body("roller", "slide", (0.0, height), axis=(0.0, 1.0), velocity=(speed,), mass=DRIVE.mass, loops=(roller,)),
+    )
+    return Scene(
+        "cam",
+        bodies,
+        springs=(Spring("roller", DRIVE.stiffness, DRIVE.rest - height),),
+        torques=(Torque("cam", DRIVE.torque),),
+        contacts=(Contact((Side("roller"), Side("cam")), friction, 0.5),),
+        duration=duration,
+        tolerance=1e-11,
+    )
+
+
+# Contacts that no drawing has: random force directions, as kernels keep them and as whole matrices.
+
+Array = NDArray[np.float64]
+
+
+def closed_of(normal: Array, tangential: Array, ids: list[int] | None = None, **kin: list[float]) -> Closed:
+    """Contacts with these force directions, (m, n) each; entries in no particular order, none for what both leave alone."""
+    m = len(normal)
+    closed = closed_contacts(m + 2)
+    for i in range(m):
+        columns = [j for j in range(normal.shape[1]) if normal[i, j] != 0.0 or tangential[i, j] != 0.0][::-1]
+        closed.ids[i], closed.slots[i] = i if ids is None else ids[i], len(columns)
+        closed.coord[i, : len(columns)] = columns
+        closed.w_N[i, : len(columns)], closed.w_T[i, : len(columns)] = normal[i, columns], tangential[i, columns]
+    for name, values in kin.items():
+        closed.kin[name][:m] = values
+    closed.slots[m:], closed.w_N[m:], closed.kin["g"][m:] = 1, 99.0, -99.0  # of no contact asked about
+    return closed
+
+
+def projection_of(m: int, n: int) -> Projection:
+    """Room for so many contacts and no more on n coordinates; whatever was in it before."""
+    projection = _projection_room(n, m)
+    for array in projection:
+        array[...] = 1 if array.dtype.kind == "i" else 77.0
+    return projection
+
+
+def both(normal: Array, tangential: Array) -> Array:
+    """(2 m, n): normal and tangential direction of one contact after another."""
+    return np.stack([normal, tangential], axis=1).reshape(2 * len(normal), -1)
+
+
+def named(**values: object) -> SimpleNamespace:
+    """A record of made-up fields."""
+    return SimpleNamespace(**values)

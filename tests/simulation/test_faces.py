@@ -7,10 +7,9 @@ from pathlib import Path as Path_of_pathlib
 import dxf_text as d
 import numpy as np
 import pytest
-from cam_scenes import DRIVE, ECCENTRIC, RATE, cam_scene
-from moving_scenes import box, circle, polygon, touching, turned
+from moving_scenes import DRIVE, ECCENTRIC, RATE, box, cam_scene, circle, polygon, touching, turned
 from reference import pendulum
-from reference.cam import follow, oval
+from reference.flat_cam import follow, oval
 from reference.valley import Path, force, height, incline, speed
 
 from watchsim.geometry.loops import Loop

@@ -5,11 +5,14 @@ import math
 
 import numpy as np
 import pytest
-from moving_scenes import box, circle, ground, on_slope, polygon, profile, touching
+from moving_scenes import box, circle, ground, of_kind, on_slope, polygon, profile, touching
+from scipy.integrate import solve_ivp
 
 from watchsim.geometry.loops import Loop
-from watchsim.geometry.primitives import Line
-from watchsim.scene.forces import Contact, Side
+from watchsim.geometry.primitives import Arc, Line
+from watchsim.paths import profiles_dir
+from watchsim.scene.forces import Contact, Side, Spring
+from watchsim.scene.load import load
 from watchsim.scene.scene import Body, Recording, Scene
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.state import EventKind, Stop
@@ -323,3 +326,115 @@ def test_a_long_flight_does_not_make_short_looks() -> None:
     run = simulate(scene, 0.4)
     assert run.stop == Stop.DURATION
     assert run.counts["gap_evaluations"] < 5_000_000
+
+
+# Does what stands beside an unstable rest leave it when it must, and does what stands exactly at it stay?
+#
+# The times are those of the equation of motion, solved by scipy to 1e-12.
+
+G = 9.81
+DOWN = (0.0, -G)
+BESIDE = [1e-3, 1e-6, 1e-9, 1e-11]  # rad
+
+
+def time_of(start: float, square: float, end: float) -> float:
+    """When an angle with angle'' = square sin(angle), let go at `start`, comes to `end`, s."""
+
+    def there(t, z):
+        return z[0] - end
+
+    there.terminal = True
+    law = {"method": "DOP853", "rtol": 1e-13, "atol": 1e-30}
+    found = solve_ivp(lambda t, z: [z[1], square * math.sin(z[0])], (0, 60), [start, 0], events=there, **law)
+    return float(found.t[-1])
+
+
+def on_hilltop(angle: float, hill: float = 0.05, disc: float = 0.005) -> Scene:
+    """A smooth disc on top of a round hill."""
+    arm = hill + disc
+    place = arm * math.sin(angle), arm * math.cos(angle)
+    body = Body("disc", "free", position=place, mass=0.01, inertia=1.25e-7, loops=(circle(disc),))
+    bodies = (Body("hill", "fixed", loops=(circle(hill),)), body)
+    return Scene("hilltop", bodies, contacts=touching("hill", "disc"), gravity=DOWN)
+
+
+def upright(angle: float) -> Scene:
+    """A pendulum above its pivot."""
+    body = Body("pendulum", angle=angle, mass=0.1, inertia=1e-3, centre_of_mass=(0.0, 0.1))
+    return Scene("upside down", (body,), gravity=DOWN)
+
+
+def on_end(angle: float) -> Scene:
+    """A rod that stands on its pointed end, 60 mm below its centre of mass; friction holds the point."""
+    r = 0.06
+    outline = polygon((0.0, -r), (0.002, -0.9 * r), (0.002, r), (-0.002, r), (-0.002, -0.9 * r))
+    place = -r * math.sin(angle), r * math.cos(angle)
+    body = Body("rod", "free", position=place, angle=angle, mass=0.02, inertia=2.4e-5, loops=(outline,))
+    return Scene("on end", (body, ground()), contacts=touching("rod", "ground", friction=1.0), gravity=DOWN)
+
+
+@pytest.mark.parametrize("angle", BESIDE)
+def test_a_disc_leaves_the_top_of_a_hill(angle: float) -> None:
+    """It loses touch where two thirds of the height are left (Newton's law with the speed that energy gives)."""
+    due = time_of(angle, G / 0.055, math.acos(2.0 / 3.0 * math.cos(angle)))
+    opened = of_kind(simulate(on_hilltop(angle), 1.02 * due), EventKind.OPEN)
+    assert [event["t"] for event in opened] == [pytest.approx(due, abs=1e-12 / angle + 1e-7)]
+
+
+@pytest.mark.parametrize("angle", BESIDE)
+@pytest.mark.parametrize(("scene", "column", "square"), [(upright, 0, 0.1 * G * 0.1 / 1e-3), (on_end, 2, G / (0.06 + 0.02))])
+def test_what_stands_upright_falls(scene, column: int, square: float, angle: float) -> None:
+    due = time_of(angle, square, 0.2)
+    run = simulate(scene(angle), due)
+    assert run.end_q[column] == pytest.approx(0.2, abs=1e-11 / angle + 1e-6)
+
+
+@pytest.mark.parametrize("scene", [on_hilltop, upright, on_end])
+def test_what_stands_exactly_stays(scene) -> None:
+    exact = scene(0.0)
+    run = simulate(exact, 20.0)
+    assert run.simulated == 20.0 and abs(run.q - run.q[0]).max() < 1e-15
+
+
+# Is no gap between the ends of an arc passed unseen, however long the steps are?
+
+
+@pytest.mark.parametrize("tolerance", [1e-5, 3e-6, 3e-7, 1e-7])
+def test_a_duplex_goes_at_every_tolerance(tolerance: float) -> None:
+    """A tooth that rested on the roller passed the notch in one step; at the other corner of the notch it held the balance."""
+    scene = load(profiles_dir() / "duplex")
+    coarse, fine = (simulate(scene, 1.0, tolerance=one) for one in (tolerance, 1e-9))
+    assert coarse.q[-1] == pytest.approx(fine.q[-1], abs=3e-4)
+
+
+@pytest.mark.parametrize("seed", range(24))
+def test_a_point_leaves_a_turning_disc_where_its_arc_ends(seed: int) -> None:
+    """Without friction the disc keeps its rate, so that the angle of the flat gives the time."""
+    dice = np.random.default_rng([2026, seed])
+    radius = 2e-3
+    gap, rate = 10.0 ** dice.uniform(-2.0, 0.3), dice.choice([-1.0, 1.0]) * 10.0 ** dice.uniform(-1.0, 3.0)
+    way = dice.uniform(0.05, 5.0)  # rad, from the start to the flat
+    arc = Arc(0.0, 0.0, radius, 0.5 * gap, 2.0 * math.pi - gap)
+    angle = 0.5 * math.pi + math.copysign(0.5 * gap + way, -rate)
+    wedge = ((0.0, 0.0), (0.1 * radius, radius), (-0.1 * radius, radius))
+    disc = Loop((arc, Line(*arc.end, *arc.start)))
+    scene = Scene(
+        "a disc with a flat",
+        (
+            Body("disc", "pivot", (0.0, 0.0), angle, velocity=(rate,), inertia=1e-8, loops=(disc,)),
+            Body(
+                "point",
+                "slide",
+                (0.0, radius),
+                axis=(0.0, 1.0),
+                mass=1e-5,
+                loops=(Loop(tuple(Line(*wedge[i - 1], *wedge[i]) for i in range(3))),),
+            ),
+        ),
+        springs=(Spring("point", 2.0, -2e-3),),
+        contacts=(Contact((Side("point"), Side("disc")), 0.0, 0.0),),
+        duration=30.0 / abs(rate),
+    )
+    run = simulate(scene, (way + 0.5 * gap) / abs(rate), tolerance=10.0 ** dice.uniform(-10.0, -3.0))
+    ends = run.events["t"][np.isin(run.events["kind"], (EventKind.OPEN, EventKind.HANDOVER))]
+    assert ends[0] == pytest.approx(way / abs(rate), rel=1e-9)

@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from every_time import few
-from made_up_contacts import both, closed_of, named, projection_of
-from moving_scenes import bowl, circle, polygon, profile, touching
+from moving_scenes import both, bowl, circle, closed_of, named, polygon, profile, projection_of, touching
 from numpy.polynomial import Polynomial
 from plain_kernels import in_python
 from reference import pendulum

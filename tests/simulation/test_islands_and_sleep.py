@@ -7,8 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from every_time import few
-from made_up_contacts import named
-from moving_scenes import box, circle, ground, of_kind, on_slope, profile, tip, touching
+from moving_scenes import box, circle, ground, named, of_kind, on_slope, profile, tip, touching
 from plain_kernels import in_python
 from reference import rolling
 from reference.block import block, stops_at

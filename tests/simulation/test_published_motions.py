@@ -99,14 +99,25 @@ def half_pitches(done: Trajectory) -> np.ndarray:
     return -np.diff(column(done, "wheel", times)) / HALF_PITCH
 
 
-def test_one_second() -> None:
-    done = simulate(profile("bench_lever"), 1.0)
+@pytest.mark.parametrize(
+    ("duration", "tolerance", "beats"),
+    [
+        (1.0, 1e-9, 6),
+        *((0.5, one, 2) for one in (1e-6, 1e-7, 1e-8, 1e-10, 1e-12)),
+        pytest.param(60.0, 1e-9, 478, marks=pytest.mark.slow),
+    ],
+)
+def test_every_beat_is_half_a_pitch_at_any_tolerance(duration: float, tolerance: float, beats: int) -> None:
+    """A slip that reverses in one of them must not stop the clock."""
+    done = simulate(profile("bench_lever"), duration, tolerance)
     assert done.stop == Stop.DURATION
     advance = half_pitches(done)
-    assert len(advance) >= 6
+    assert len(advance) >= beats
     assert advance == pytest.approx(np.ones(len(advance)), abs=0.01)
-    assert done.worst_penetration < 1e-9
-    assert done.counts["lcp_failures"] == done.counts["energy_rescues"] == 0
+    if tolerance == 1e-9:
+        assert done.worst_penetration < 1e-9
+        assert done.energy["residual_relative"] < 1e-8
+        assert done.counts["lcp_failures"] == done.counts["energy_rescues"] == 0
 
 
 def test_energy_ledger() -> None:
@@ -131,16 +142,6 @@ def test_no_impact_gains_energy() -> None:
     assert np.all(impacts["value"] <= 1e-9)
 
 
-@pytest.mark.parametrize("tolerance", [1e-6, 1e-7, 1e-8, 1e-10, 1e-12])
-def test_any_tolerance_will_do(tolerance: float) -> None:
-    """Some beats; a slip that reverses in one of them must not stop the clock."""
-    done = simulate(profile("bench_lever"), 0.5, tolerance)
-    assert done.stop == Stop.DURATION
-    advance = half_pitches(done)
-    assert len(advance) >= 2
-    assert advance == pytest.approx(np.ones(len(advance)), abs=0.01)
-
-
 def material(side: Side, pose: tuple[float, float, float]) -> shapely.Geometry:
     """The outlines of one side of a contact, arcs as inscribed chords of 5 µm."""
     loops = [loop for loop in profile("bench_lever").body(side.body).loops if side.layer in (None, loop.layer)]
@@ -163,25 +164,9 @@ def test_nothing_runs_through_anything(tolerance: float, instants: int) -> None:
             assert shapely.intersection(*now).area < 1e-9 * 5e-4, (contact, t)
 
 
-@pytest.fixture(scope="module")
-def minute() -> Trajectory:
-    return simulate(profile("bench_lever"), 60.0, 1e-9)
-
-
 @pytest.mark.slow
-def test_a_minute(minute: Trajectory) -> None:
-    assert minute.stop == Stop.DURATION
-    advance = half_pitches(minute)
-    assert len(advance) >= 478
-    assert advance == pytest.approx(np.ones(len(advance)), abs=0.01)
-    assert minute.worst_penetration < 1e-9
-    assert minute.energy["residual_relative"] < 1e-8
-    assert minute.counts["lcp_failures"] == 0
-
-
-@pytest.mark.slow
-def test_amplitude_and_period(minute: Trajectory) -> None:
-    amplitude, period = amplitude_and_period(minute, 13.0, 15.0)
+def test_amplitude_and_period() -> None:
+    amplitude, period = amplitude_and_period(simulate(profile("bench_lever"), 15.0, 1e-9), 13.0, 15.0)
     assert amplitude == pytest.approx(AMPLITUDE_DEG, abs=0.05)
     assert period == pytest.approx(PERIOD, abs=1e-6)
 

@@ -6,9 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from carried_scenes import ARRANGEMENTS, carried_scene, places
 from moving_scenes import profile
-from pair_scenes import outline
+from pair_scenes import ARRANGEMENTS, carried_scene, outline, places
 from scipy.interpolate import BPoly
 
 from watchsim.geometry.loops import Loop
