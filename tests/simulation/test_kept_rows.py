@@ -17,6 +17,7 @@ from watchsim.scene.scene import EVERYTHING, Body, Recording, Scene
 from watchsim.simulation import runner as running
 from watchsim.simulation.recording import (
     FEWEST_TURNS,
+    Pair,
     first_noises,
     half_swings,
     since_two_before,
@@ -333,6 +334,24 @@ def test_an_even_swing_without_noises(count: int) -> None:
         assert sums[name] == (even if number > 0 else None)
 
 
+@pytest.mark.parametrize("late", [-1.0, 0.0, 1.0])
+def test_a_stop_that_ends_a_swing_is_no_first_noise_of_the_next(late: float) -> None:
+    """Every other swing ends at a stop, heard at the turning point but for rounding; each has its tick halfway to its rest."""
+    balance, stop = Body("balance", "pivot", velocity=(3.0,), inertia=1e-9), Body("stop", "fixed")
+    tally = Tally(Scene("one", (balance, stop), springs=(Spring("balance", 1e-9),)), (Pair(0, "stop", "line", 0, "", "balance", "corner", 0, ""),))
+    turns = np.arange(1.0, 40.0, 2.0)
+    stopped = turns[::2] + late * np.spacing(turns[::2])
+    kinds = {EventKind.TURN: turns, EventKind.CROSS: turns + 1.0, EventKind.IMPACT: np.concatenate([turns + 0.5, stopped])}
+    events = np.concatenate([np.zeros(len(times), EVENT_DTYPE) for times in kinds.values()])
+    events["t"], events["kind"] = np.concatenate([*kinds.values()]), np.repeat([*kinds], [len(t) for t in kinds.values()])
+    of_turn = events["kind"] == EventKind.TURN
+    events["value"][of_turn] = np.resize([-1.0, 1.0], len(turns))
+    tally.fold(np.sort(events, order="t", kind="stable"))
+    sums = tally.finished()
+    assert sums["ticks"] == sums["half_swings"] > 15
+    assert sums["uneven_ticks"]["mean"] == pytest.approx(0.0, abs=1e-12)
+
+
 @pytest.mark.parametrize("parts", [2, 7, 100])
 def test_sums_do_not_depend_on_how_events_are_handed_over(parts: int) -> None:
     run = whole()
@@ -482,10 +501,10 @@ def test_the_first_noise_after_a_silence(seed: int) -> None:
     step = 0.1  # a quarter of the silence, which is a tenth of a half period of 4
     noises, starts = step * np.unique(rng.integers(0, 80, 25)), step * np.arange(0.0, 80.0, 10.0)
     ends = starts + 10.0 * step
-    expected = []
+    expected, turn = [], 1e-6 * 4.0  # at the turning point itself a noise belongs to the half swing that ends
     for start, end in zip(starts, ends, strict=True):
-        after = [t for i, t in enumerate(noises) if (i == 0 or t - noises[i - 1] >= 0.4) and start < t]
-        expected.append(after[0] if after and after[0] < end else math.nan)
+        after = [t for i, t in enumerate(noises) if (i == 0 or t - noises[i - 1] >= 0.4) and start + turn < t]
+        expected.append(after[0] if after and after[0] < end + turn else math.nan)
     assert first_noises(noises, starts, ends, 4.0) == pytest.approx(np.array(expected), nan_ok=True, abs=0.0)
 
 

@@ -149,19 +149,10 @@ def holding_at_end(run: Trajectory) -> list[Pair]:
 def ticks(run: Trajectory, oscillator: str, starts: Array, ends: Array, half_period: float) -> Array:
     """For each half swing from `starts` to `ends` (s), the time of the oscillator's first impact after a silence; else nan."""
     (noises,) = contact_columns(run, involves(oscillator), ["t"], EventKind.IMPACT)
-    return ticks_among(noises, starts, ends, half_period)
-
-
-def ticks_among(noises: Array, starts: Array, ends: Array, half_period: float) -> Array:
-    """The same of noises at these times (s). A stop that turns the oscillator back is heard at the turning point, by rounding a
-    little before it or after: it is a noise of the half swing that it ends.
-    """
-    turn = AT_THE_TURN * half_period
-    return first_noises(noises, starts + turn, ends + turn, half_period)
+    return first_noises(noises, starts, ends, half_period)
 
 
 DAY = 86400.0
-AT_THE_TURN = 1e-6  # of half a period
 HEARD = 0.8  # share of the half swings that must have a tick, for the ticks to be what the beat error is measured by
 
 

@@ -142,6 +142,7 @@ FEWEST_TURNS = 3
 LONGEST_STEP = 0.26  # periods: within a window rows are never further apart than a quarter of a swing
 STILL = 1e-13  # rad or m: half swings no larger are rounding, of a body at rest
 QUIET = 0.1  # of half a period: so long the oscillator must have touched nothing before its first noise
+AT_THE_TURN = 1e-6  # of half a period: a noise this soon after a turning point is one of the stop that made it turn
 
 
 def half_swings(crossings: Events, turns: Events) -> tuple[Indices, Indices, Indices]:
@@ -167,12 +168,14 @@ def half_swings(crossings: Events, turns: Events) -> tuple[Indices, Indices, Ind
 def first_noises(noises: Array, starts: Array, ends: Array, half_period: float) -> Array:
     """For each half swing from `starts` to `ends` (s), the time of the first of the noises (s) after a silence; else nan.
 
-    What rings on from the half swing before (a knock at the turning point) is not silence and is passed over.
+    What rings on from the half swing before (a knock at the turning point) is not silence and is passed over. A stop that turns
+    the oscillator back is heard at the turning point, by rounding a little before it or after: it belongs to what it ends.
     """
+    turn = AT_THE_TURN * half_period
     first_of_burst = noises[np.diff(noises, prepend=-np.inf) >= QUIET * half_period]
-    place = np.searchsorted(first_of_burst, starts, side="right")
+    place = np.searchsorted(first_of_burst, starts + turn, side="right")
     found = np.append(first_of_burst, np.inf)[place]
-    return np.where(found < ends, found, np.nan)
+    return np.where(found < ends + turn, found, np.nan)
 
 
 def since_two_before(times: Array) -> Array:

@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from watchsim.analysis.timing import HEARD, ticks_among
+from watchsim.analysis.timing import HEARD
 from watchsim.displays import notebook_html
-from watchsim.simulation.recording import unevenness
+from watchsim.simulation.recording import first_noises, unevenness
 from watchsim.simulation.state import EventKind
 from watchsim.simulation.trajectory import Array
 from watchsim.studies.section import Events, Parts, turns
@@ -50,7 +50,7 @@ def measures(events: Events, parts: Parts, start: float, time: float) -> Measure
 def _marks(events: Events, parts: Parts, ends: Array) -> Array:
     """What the beat error is measured by: first noises where they are heard, else passages; one for each half swing."""
     noises = events["t"][(events["kind"] == EventKind.IMPACT) & parts.touching[events["contact"]]]
-    heard = ticks_among(noises, ends[:-1], ends[1:], 0.5 * parts.period)
+    heard = first_noises(noises, ends[:-1], ends[1:], 0.5 * parts.period)
     passages = events["t"][(events["kind"] == EventKind.CROSS) & (events["body"] == parts.body)]
     if len(passages) != len(heard) or np.isfinite(heard).mean() >= HEARD:
         return heard
