@@ -228,6 +228,54 @@ def test_a_graham_drawn_by_hand_ticks_as_proposed(tmp_path: Path, capsys: pytest
     assert json.loads(capsys.readouterr().out)["amplitude_deg"] == pytest.approx(4.0, abs=0.5)
 
 
+def renamed(path: Path, names: dict[str, str]) -> Path:
+    """The same drawing with other names of layers; a layer of no name here is left as it is."""
+    document = ezdxf.readfile(path)
+    for entity in document.modelspace():
+        entity.dxf.layer = names.get(entity.dxf.layer, entity.dxf.layer)
+    document.saveas(path)
+    return path
+
+
+@pytest.mark.parametrize("stone", ["BASCULE_REPOS", "BASCULE_PIERRE_DE_REPOS", "BASCULE_LEVEE", "BASCULE_PIERRE"])
+def test_a_french_detent_is_known_by_its_stone_its_leaf_and_its_finger(stone: str, tmp_path: Path) -> None:
+    """Neither by the beak of the detent, nor by the roller and the impulse stone, which the leaf does not meet."""
+    names = {"wheel_TEETH": "ROUE_DENTURE", "detent_STONE": stone, "detent_BAR": "BASCULE_TIGE", "detent_HORN": "BASCULE_BEC"}
+    names |= {"detent_HUB": "BASCULE_MOYEU", "passing_LEAF": "RESSORT_DE_DEGAGEMENT", "balance_TABLE": "BALANCIER_PLATEAU"}
+    names |= {"balance_IMPULSE_STONE": "BALANCIER_PIERRE_IMPULSION", "balance_ROLLER": "BALANCIER_PETIT_PLATEAU"}
+    names |= {"balance_DISCHARGE": "BALANCIER_DOIGT", "balance_RIM": "BALANCIER_SERGE", "banking_SCREW": "VIS_BUTEE"}
+    found = tried([renamed(assembly(scene_of("detent"), tmp_path / "a.dxf", "body"), names)])
+    assert [tuple(side.split(".")[1] for side in pair) for pair in found.contacts] == [
+        ("ROUE_DENTURE", stone),
+        ("ROUE_DENTURE", "BALANCIER_PIERRE_IMPULSION"),
+        ("BASCULE_BEC", "RESSORT_DE_DEGAGEMENT"),
+        ("BASCULE_TIGE", "VIS_BUTEE"),
+        ("RESSORT_DE_DEGAGEMENT", "BALANCIER_DOIGT"),
+    ]
+    assert found.doubts == ()
+
+
+@pytest.mark.parametrize("turned", [0.0, -8.0, 5.0])
+def test_a_pin_drawn_over_the_fork_meets_it_all_the_same_and_it_is_said(turned: float, tmp_path: Path) -> None:
+    """The lever drawn off the middle, by some degrees, and the balance at rest: its pin then lies over a horn of the fork."""
+    path = assembly(scene_of("pin_pallet"), tmp_path / "a.dxf", "body")
+    document, scene = ezdxf.readfile(path), scene_of("pin_pallet")
+    x, y = (1e3 * value for value in scene.body("lever").position)
+    turn = ezdxf.math.Matrix44.chain(
+        ezdxf.math.Matrix44.translate(-x, -y, 0.0),
+        ezdxf.math.Matrix44.z_rotate(math.radians(turned)),
+        ezdxf.math.Matrix44.translate(x, y, 0.0),
+    )
+    for entity in document.modelspace():
+        if entity.dxf.layer.startswith("lever_"):
+            entity.transform(turn)
+    document.saveas(path)
+    found = propose([path])
+    assert any({"FORK", "PIN"} == {side.split("_")[-1] for side in pair} for pair in found.contacts)
+    said = any("overlap as they are drawn" in words and "lever_FORK" in words for words in found.doubts)
+    assert said == (abs(turned) > 4.0)
+
+
 @pytest.mark.parametrize("mirrored", [False, True])
 def test_a_finger_turns_the_way_in_which_it_carries_the_star_on(mirrored: bool, tmp_path: Path) -> None:
     path = assembly(scene_of("jumper"), tmp_path / "a.dxf", "whole")

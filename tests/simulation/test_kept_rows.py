@@ -338,7 +338,10 @@ def test_an_even_swing_without_noises(count: int) -> None:
 def test_a_stop_that_ends_a_swing_is_no_first_noise_of_the_next(late: float) -> None:
     """Every other swing ends at a stop, heard at the turning point but for rounding; each has its tick halfway to its rest."""
     balance, stop = Body("balance", "pivot", velocity=(3.0,), inertia=1e-9), Body("stop", "fixed")
-    tally = Tally(Scene("one", (balance, stop), springs=(Spring("balance", 1e-9),)), (Pair(0, "stop", "line", 0, "", "balance", "corner", 0, ""),))
+    tally = Tally(
+        Scene("one", (balance, stop), springs=(Spring("balance", 1e-9),)),
+        (Pair(0, "stop", "line", 0, "", "balance", "corner", 0, ""),),
+    )
     turns = np.arange(1.0, 40.0, 2.0)
     stopped = turns[::2] + late * np.spacing(turns[::2])
     kinds = {EventKind.TURN: turns, EventKind.CROSS: turns + 1.0, EventKind.IMPACT: np.concatenate([turns + 0.5, stopped])}

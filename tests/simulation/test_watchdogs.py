@@ -1,5 +1,6 @@
 """Is a run that goes wrong ended by its own checks, and do instants come to an end?"""
 
+import math
 import os
 import subprocess
 import sys
@@ -10,7 +11,7 @@ import numpy as np
 import pytest
 from moving_scenes import box, circle, ground, profile, touching
 
-from watchsim import jit
+from watchsim import designs, jit
 from watchsim.jit import callable_kernel
 from watchsim.mechanism.compile import compile_scene
 from watchsim.model import blank
@@ -74,6 +75,15 @@ def test_changes_of_energy_are_explained_up_to_rounding() -> None:
     assert explained(model, options, 1.0, 1.0 + 5e-7, 1.0)
     assert not explained(model, options, 1.0, 1.0 - 5e-6, 1.0)
     assert explained(model, options, 1e-20, 0.0, 1.0)  # of what was highest, or slow enough to count as standing
+
+
+@pytest.mark.parametrize("slots", [7, 8])
+def test_what_a_step_drifts_is_much_of_a_body_that_is_nearly_at_rest(slots: int) -> None:
+    """A pin that leaves its slot brings a Geneva wheel to rest: at the mouth, rounding is 1e-6 of what energy it has left."""
+    run = simulate(designs.geneva(slots=slots).scene(), 2.25)
+    assert run.stop == Stop.DURATION
+    turned = run.q[-1, run.slices["wheel"].start]
+    assert turned == pytest.approx(-2.5 * math.tau / slots + math.pi / slots, abs=math.radians(0.1))
 
 
 def test_a_ledger_that_does_not_close_is_noticed() -> None:

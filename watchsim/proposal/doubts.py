@@ -12,11 +12,11 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from watchsim.geometry.primitives import Point
-from watchsim.proposal.facing import OVER, Facing
+from watchsim.proposal.facing import CUTTING, Facing, is_about_pivot
 from watchsim.proposal.parts import nose_of, toothing
 from watchsim.proposal.pieces import NONE, SAME, Piece, ring
 from watchsim.proposal.roles import Role, first_of
-from watchsim.proposal.words import CLICK, DRIVER, LEVER, OSCILLATOR, WHEEL
+from watchsim.proposal.words import CLICK, DRIVER, LEVER, OSCILLATOR, OVER, WHEEL
 
 
 def doubts(
@@ -34,6 +34,7 @@ def doubts(
         found += [f"{role.name} meets nothing that moves or holds it: {_cure(role)}" for role in moving if role.name not in met]
         found += _chain(roles, facings)
         found += list(_heights(moving, facings)) or _cut_in(moving, facings)
+        found += _overlapping(facings)
         found += _clicks(moving)
     elif not found and moving and not facings and len(roles) > 1:
         found.append(f"{moving[0].name} is all that moves, and nothing meets it: no pivot was found for the other parts")
@@ -155,17 +156,30 @@ def _cut_in(moving: Sequence[Role], facings: Sequence[Facing]) -> Iterator[str]:
         return
     for other in moving:
         met = [one for one in facings if {one.first, one.second} == {wheel, other}]
-        if other.task not in (LEVER, OSCILLATOR, CLICK) or any(one.by_name for one in met):
+        if other.task not in (LEVER, OSCILLATOR, CLICK, DRIVER) or any(one.by_name for one in met):
             continue
         teeth = [piece for piece in wheel.part.pieces if piece.turned is toothed]
         taken = {(layer, facing) for one in met for (_, facing), (role, layer) in (one.sides, one.sides[::-1]) if role is other}
-        pairs = [(p, q) for p in teeth for q in other.part.pieces if (q.layer, p.layer) not in taken]
+        pushing = [piece for piece in other.part.pieces if not is_about_pivot(other, piece.layer)]
+        pairs = [(p, q) for p in teeth for q in pushing if (q.layer, p.layer) not in taken]
         between = ((p, q) for p, q in pairs if ring(q.points, toothed.centre)[0] > toothed.inner)
         cutting = (q.layer for p, q in between if OVER < p.region.intersection(q.region).area / min(p.area, q.area) < DEEP)
         for layer in dict.fromkeys(cutting):
             yield (
                 f"{layer} cuts into the teeth of {wheel.name} as it is drawn, so that it was taken to lie at another height. "
                 "If it touches them, turn one of the two in the drawing until it is clear of them"
+            )
+
+
+def _overlapping(facings: Sequence[Facing]) -> Iterator[str]:
+    """What names say to be at one height cannot be where it is drawn in each other."""
+    for facing in facings:
+        if facing.why == CUTTING:
+            names = f"{facing.first_layer} of {facing.first.name} and {facing.second_layer} of {facing.second.name}"
+            yield (
+                f"{names} overlap as they are drawn, by {facing.overlap:.0%} of the smaller one; their names say that they touch, "
+                "so that they are taken to, from a start at which they are clear of each other. If they lie at different "
+                "heights, take that contact out"
             )
 
 

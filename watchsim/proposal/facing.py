@@ -14,7 +14,7 @@ import numpy as np
 
 from watchsim.geometry.primitives import Point
 from watchsim.mechanism.overlap import material, placed
-from watchsim.proposal.pieces import Floats, Piece, Region, ring, united
+from watchsim.proposal.pieces import SAME, Floats, Piece, Region, ring, united
 from watchsim.proposal.roles import Role
 from watchsim.proposal.words import (
     CLICK,
@@ -24,6 +24,7 @@ from watchsim.proposal.words import (
     IMPULSE,
     LEVER,
     OSCILLATOR,
+    OVER,
     PASSING,
     PIN,
     RESTING,
@@ -36,9 +37,9 @@ from watchsim.proposal.words import (
 
 SWING = math.radians(15.0)  # of a lever or click, to either side
 STEPS = 7
+CUTTING = "by their names, though they are drawn overlapping"
 MARGIN = 0.01  # of the whole size: what comes as near as this is taken to meet
 BETTER = ((FORK, PIN - IMPULSE, IMPULSE), (RESTING, ROLLER, STONES))  # of a surface: what it meets sooner than another, by name
-OVER = 0.02  # of the smaller area: what overlaps more lies at different heights
 
 
 @dataclass(frozen=True)
@@ -74,6 +75,8 @@ def facings(roles: Sequence[Role], size: float) -> tuple[list[Facing], list[Faci
             kept = _best_named([facing for facing in met if facing.by_name]) or [
                 one for one in met if not _lies_over(one, roles)
             ]
+            if {one.task, other.task} == {PASSING, OSCILLATOR}:
+                kept = _discharging(kept, likely)
             likely += kept
             others += [facing for facing in met if facing not in kept]
     return likely, others
@@ -90,6 +93,24 @@ def _best_named(named: list[Facing]) -> list[Facing]:
     ]
 
 
+def _discharging(met: list[Facing], likely: Sequence[Facing]) -> list[Facing]:
+    """Without rollers, which push nothing as they turn, and without what the wheel drives: that is at another height."""
+    driven = [
+        (role, layer) for facing in likely if WHEEL in (facing.first.task, facing.second.task) for role, layer in facing.sides
+    ]
+    pushing = [
+        facing
+        for facing in met
+        if not any(side in driven or is_about_pivot(*side) for side in facing.sides if side[0].task == OSCILLATOR)
+    ]
+    return pushing or met
+
+
+def is_about_pivot(role: Role, layer: str) -> bool:
+    """Is a layer of a body nothing but discs and rims about its pivot? They push nothing as it turns."""
+    return all(piece.is_disc and math.dist(piece.centroid, _at(role)) <= SAME for piece in role.part.on(layer))
+
+
 def _lies_over(facing: Facing, roles: Sequence[Role]) -> bool:
     """Does a layer of the oscillator that covers a lever in the drawing meet a wheel? That is at the lever's height."""
     layers = {role.task: role.part.on(layer) for role, layer in facing.sides}
@@ -103,7 +124,7 @@ def named_facings(roles: Sequence[Role]) -> list[Facing]:
     for k, one in enumerate(roles):
         for other in roles[k + 1 :]:
             pairs = [(a, b) for a in one.part.layers for b in other.part.layers]
-            named = [(a, b) for a, b in pairs if facing_by_name(a, b)]
+            named = [(a, b) for a, b in pairs if facing_by_name(a, b, frozenset((one.task, other.task))) is not None]
             if {one.task, other.task} == {LEVER, FIXED}:
                 arm = max(one.part.pieces if one.task == LEVER else other.part.pieces, key=lambda piece: piece.area).layer
                 named = [pair for pair in pairs if arm in pair]
@@ -137,11 +158,13 @@ def _rests_on(one: Role, other: Role) -> Facing:
 def _facing(one: Role, a: str, other: Role, b: str, size: float) -> Facing | None:
     pairs = [(p, q) for p in one.part.on(a) for q in other.part.on(b)]
     overlap = max(_overlap(p, q) for p, q in pairs)
-    if overlap > OVER or not any(_reach(one, p, other, q, MARGIN * size) for p, q in pairs):
+    most = facing_by_name(a, b, frozenset((one.task, other.task)))
+    if overlap > (OVER if most is None else most) or not any(_reach(one, p, other, q, MARGIN * size) for p, q in pairs):
         return None
-    named = facing_by_name(a, b)
-    why = "by their names, and they come within reach" if named else "they come within reach of each other"
-    return Facing(one, a, other, b, why, overlap, named)
+    why = "they come within reach of each other" if most is None else "by their names, and they come within reach"
+    if overlap > OVER:
+        why = CUTTING
+    return Facing(one, a, other, b, why, overlap, most is not None)
 
 
 def _overlap(p: Piece, q: Piece) -> float:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from watchsim.geometry.primitives import Point
 from watchsim.mechanism.overlap import placed
+from watchsim.proposal.geneva import cranks_of
 from watchsim.proposal.pieces import (
     MANY,
     NONE,
@@ -31,7 +32,7 @@ from watchsim.proposal.pieces import (
     hole_of,
     is_toothed,
 )
-from watchsim.proposal.words import CLICK, FIXED, LEVER, OSCILLATOR, WHEEL, hints_of, part_of, part_word, tokens
+from watchsim.proposal.words import CLICK, DRIVER, FIXED, LEVER, OSCILLATOR, WHEEL, hints_of, part_of, part_word, tokens
 
 
 @dataclass(eq=False)
@@ -235,11 +236,14 @@ def parts_of(sources: Sequence[Source], pieces: Sequence[Piece]) -> list[Part]:
 
 def _in_one_drawing(source: Source, pieces: Sequence[Piece], alone: bool) -> list[Part]:
     marks = _distinct(source.marks)
-    parts = [_single(piece, marks, source) for piece in pieces]
+    cranks = _cranks(pieces, marks)
+    turned = [piece for crank in cranks for piece in crank.pieces]
+    parts = [_single(piece, marks, source) for piece in pieces if piece not in turned]
     above = _above_others(parts, marks)
     parts = [part for part in parts if part not in above]
     if alone:  # one of several files: a drawing of one part, unless blocks or marks say otherwise
         parts = _of_one_file(source, parts, marks)
+    parts += cranks
     join(parts, _one_block(source), "they are one block")
     join(parts, _one_centre, "they have the same centre")
     join(parts, _one_name, "the names of their layers begin alike")
@@ -259,6 +263,12 @@ def _in_one_drawing(source: Source, pieces: Sequence[Piece], alone: bool) -> lis
         if part.centre is None and part.kind != FIXED and part.kind is not None:
             part.centre = _own_centre(part)
     return parts
+
+
+def _cranks(pieces: Sequence[Piece], marks: Sequence[Mark]) -> list[Part]:
+    """The cranks of Geneva drives; what is called another part than a driver is none, and turns with none."""
+    free = [piece for piece in pieces if part_word(piece.layer) is None or part_of(piece.layer) in (DRIVER, WHEEL)]
+    return [Part(one.pieces, one.centre, DRIVER, why=[one.centre.why]) for one in cranks_of(free, marks)]
 
 
 def _single(piece: Piece, marks: Sequence[Mark], source: Source) -> Part:

@@ -91,10 +91,16 @@ def amounts_of(roles: Sequence[Role], size: float, swing: float, met: Sequence[F
         inertia[swinging.name] = _oscillators(inertia, swinging, lever, wheel, lift, Q_FACTOR[watch])
     driven = _driven(roles, wheel, swinging)
     clicks = any(role.task == CLICK for role in roles)
-    turned = driven if clicks and any(role.task == DRIVER and role.name == driven for role in roles) else None
+    evenly = any(role.task == DRIVER and role.name == driven for role in roles) and (clicks or wheel is not None)
+    turned = driven if evenly else None
     if swinging is None:
         torque = Amount(1e-6 if watch else 1e-4, "nothing in the drawing says how strong the drive is")
-        slow = Amount(torque.value / (2.0 * math.pi * TURNS), f"so that {driven} comes to about {TURNS:g} turn per second")
+        why = (
+            "so that it stops when nothing drives it"
+            if turned
+            else f"so that {driven} comes to about {TURNS:g} turn per second"
+        )
+        slow = Amount(torque.value / (2.0 * math.pi * TURNS), why)
         springs = _clicks(roles, wheel, torque.value)
         sliding = [role for role in roles if any(spring.axis and spring.body == role.name for spring in springs)]
         mass = {role.name: Amount(STEEL * thick * role.part.area, plate) for role in sliding}
@@ -239,7 +245,7 @@ def _oscillators(
 
 def _driven(roles: Sequence[Role], wheel: Role | None, swinging: Role | None) -> str | None:
     driver = first_of(roles, DRIVER)
-    if driver is not None and (wheel is None or wheel.teeth < STEPPED):
+    if driver is not None and (wheel is None or wheel.teeth < STEPPED or driver.part.kind == DRIVER):
         return driver.name
     if wheel is not None:
         return wheel.name

@@ -20,6 +20,7 @@ from watchsim.scene.load import load
 from watchsim.scene.roles import frequency, swings
 from watchsim.scene.scene import Scene
 from watchsim.simulation.simulate import simulate
+from watchsim.simulation.state import Stop
 from watchsim.simulation.trajectory import Trajectory
 
 SECONDS, PERIODS = 3.0, 6.0  # at least: over the last three periods the work of the wheel is counted
@@ -124,6 +125,9 @@ def _wrong(run: Trajectory, found: Mapping[str, Any], proposal: Proposal) -> Ite
     tried, judged = f"in a trial of {run.simulated:.3g} s", verdict(run)
     if not judged.works:
         yield f"{tried} it does not work: {judged.message}"
+        return
+    if run.stop is not None and Stop(run.stop).gave_up:
+        yield f"{tried} it ends: {run.stop_message}"
         return
     if swings(run.scene) and found["amplitude_deg"] is None and found["timing_message"]:
         yield f"{tried} it keeps no time: {found['timing_message']}"

@@ -18,11 +18,11 @@ def _words(text: str) -> frozenset[str]:
 # Words for a part itself; a layer name that begins with one names its part.
 _PARTS = {
     WHEEL: "wheel gear pinion ratchet star cross rad gangrad steigrad ankerrad hemmungsrad hemmrad sperrrad sperrad stern "
-    "trieb malteserkreuz roue rochet étoile pignon croix ruota stella pignone croce",
+    "trieb malteserkreuz kreuz roue rochet étoile pignon croix ruota stella pignone croce",
     LEVER: "lever anchor detent passing anker hemmstück hebel wippe ancre détente bascule ancora leva",
     CLICK: "click pawl jumper follower tappet rack klinke sperrklinke sperrkegel raste springer fühler rechen cliquet sautoir "
     "palpeur râteau nottolino cricco cricchetto saltarello scatto",
-    DRIVER: "driver crank finger cam snail kurbel mitnehmer nocken kurvenscheibe schnecke manivelle doigt came limaçon "
+    DRIVER: "driver crank motor antrieb treiber moteur motore finger cam snail kurbel mitnehmer nocken kurvenscheibe schnecke manivelle doigt came limaçon "
     "manovella dito camma chiocciola",
     OSCILLATOR: "balance pendulum foliot unruh unruhe pendel balancier pendule bilanciere pendolo",
     FIXED: "banking bankings bank banks plate frame bridge wall stop stops fixed ground base cock anschlag anschläge platine "
@@ -56,17 +56,34 @@ GUARD = _words("dart guard messer dard dardo")
 ROLLER = _words("safety roller rolle sicherheitsrolle plateau disco")
 RESTING = _words("resting repos ruhe riposo")  # the long teeth of a duplex wheel
 LEAVES = _words("passing leaf goldfeder auslösefeder")
-DISCHARGES = _words("discharge discharging unlocking auslösestein dégagement")
-FACING = ((LEAVES, DISCHARGES), (TEETH, STONES), (TEETH, CLICKS), (FORK, PIN), (GUARD, ROLLER), (RESTING, ROLLER))
+DISCHARGES = _words("discharge discharging unlocking auslösestein dégagement doigt finger dito")
+LOCKING = _words(
+    "locking lock stone repos pierre ruhe ruhestein riposo pietra pins chevilles goupilles stifte spine"
+)  # of a lever
+OVER = 0.02  # of the smaller area: what overlaps more lies at different heights
+COVERS = 1.0  # the same of what is at one height by its names, wherever it is drawn
+# What works together, where one of the bodies has that task, and the most by which it may overlap as it is drawn.
+FACING = (
+    (LEAVES, DISCHARGES, None, OVER),
+    (TEETH, STONES, None, OVER),
+    (TEETH, LOCKING, LEVER, OVER),
+    (TEETH, CLICKS, CLICK, OVER),
+    (FORK, PIN, None, COVERS),
+    (GUARD, ROLLER, None, OVER),
+    (RESTING, ROLLER, None, OVER),
+)
 # A circle on a layer so called shows where a part turns: its axis, its bore or the arbor in it.
 ARBORS = _words("arbor arbour staff shaft spindle welle zapfen arbre albero")
 TURNING = MARKS | BORES | ARBORS
+DRIVING = _words("trascinamento impulso")  # a PERNO DI TRASCINAMENTO is no pivot, but a pin
 COMPOUNDS = ("achse", "welle", "bohrung", "loch", "drehpunkt")  # in which German names end
 
 
 def shows_pivot(name: str) -> bool:
     """Does a name say so? In any order, but for words such as that of CENTER WHEEL."""
     words = tokens(name)
+    if "perno" in words and DRIVING & set(words):
+        return False
     return any(word in TURNING or word.endswith(COMPOUNDS) for word in words) or (bool(words) and words[-1] in CENTRES)
 
 
@@ -94,7 +111,11 @@ def part_word(name: str) -> str | None:
     return None
 
 
-def facing_by_name(first: str, second: str) -> bool:
-    """Do the names of two surfaces say that they work together, as teeth and stones do?"""
+def facing_by_name(first: str, second: str, tasks: frozenset[str] = frozenset()) -> float | None:
+    """The most by which two surfaces may overlap whose names say that they work together, as those of teeth and stones do.
+
+    `tasks` of their bodies. None where the names do not say so.
+    """
     a, b = set(tokens(first)), set(tokens(second))
-    return any((a & one and b & other) or (a & other and b & one) for one, other in FACING)
+    fitting = ((one, other, most) for one, other, task, most in FACING if task is None or task in tasks)
+    return max((most for one, other, most in fitting if (a & one and b & other) or (a & other and b & one)), default=None)

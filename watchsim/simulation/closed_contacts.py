@@ -377,10 +377,10 @@ def is_explained(model, options, before, after, highest):
     change = abs(after - before)
     if change <= allowed:
         return True
+    drift = 0.0
     for i in range(len(model.coordinates)):
         coordinate = model.coordinates[i]
-        if coordinate.driven:
-            continue
-        slow = STOPPABLE_SPEED * options.speed_drift / options.size * coordinate.scale
-        allowed += 0.5 * coordinate.mass * slow * slow
-    return change <= allowed
+        if not coordinate.driven:
+            drift += 0.5 * coordinate.mass * (options.speed_drift / options.size * coordinate.scale) ** 2
+    # Of a body that is nearly at rest, its drift is a large share: by so much it may be off on top of its speed.
+    return change <= allowed + 2.0 * math.sqrt(before * drift) + STOPPABLE_SPEED**2 * drift
