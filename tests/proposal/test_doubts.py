@@ -2,14 +2,17 @@
 
 import json
 import math
+import re
 from pathlib import Path
 from typing import Any
 
 import ezdxf
 import ezdxf.math
 import pytest
+import shapely
 from escapement.made import one_faced_anchor
 from proposal.assemblies import assembly, mirror, scene_of
+from shapely import affinity
 
 from watchsim.cli import main
 from watchsim.proposal.propose import propose
@@ -181,6 +184,7 @@ def test_a_click_that_can_swing_through_the_teeth_is_doubted(longer: float, swin
         ),
         ("detent", ()),
         ("pin_wheel", ()),
+        ("pin_pallet", ()),
         ("cam", ()),
     ],
 )
@@ -309,6 +313,28 @@ def test_teeth_that_lock_either_way_are_driven_as_they_lean(tmp_path: Path) -> N
     (value,) = (guess.value for guess in found.guesses if guess.key == "torques.0.value")
     assert value.startswith('"-')
     assert "lock and drive either way" in found.doubts[-1]
+
+
+@pytest.mark.parametrize("aside", [0.0, 3.0, -2.0])
+def test_an_anchor_that_jams_between_two_teeth_is_said_to_and_where(aside: float, tmp_path: Path) -> None:
+    """However far aside it is drawn, it swings about the middle of its lift. The places are those at which outlines touch."""
+    _, teeth, anchor = one_faced_anchor(tmp_path)
+    pivot, turn = 20.62213808, math.radians(aside)
+    turned = [(x * math.cos(turn) - y * math.sin(turn), x * math.sin(turn) + y * math.cos(turn) + pivot) for x, y in anchor]
+    layers = {"WHEEL": [teeth, (0.0, 0.0, 1.0)], "ANCHOR": [turned, (0.0, pivot, 0.8)]}
+    found = tried([drawing(tmp_path / "clock.dxf", **layers)])
+    guesses = {guess.key: guess.value.strip('"') for guess in found.guesses}
+    assert float(guesses.get("springs.0.rest", "0°").rstrip("°")) == pytest.approx(-aside, abs=0.1)
+    assert float(guesses["timegrapher.lift_angle"].rstrip("°")) == pytest.approx(3.05, abs=0.1)
+    (jam,) = (words for words in found.doubts if "jams between two teeth" in words)
+    assert "torque may mend" not in "".join(found.doubts)
+    led, x, y, x2, y2, wheel = (float(one.replace("−", "-")) for one in re.findall(r"-?\d+\.?\d*(?=°|, |\) )", jam))
+    assert led + aside == pytest.approx(-4.17, abs=0.03)
+    one = affinity.rotate(shapely.Polygon(turned), led, origin=(0.0, pivot))
+    other = affinity.rotate(shapely.Polygon(teeth), wheel, origin=(0.0, 0.0))
+    for place in (shapely.Point(x, y), shapely.Point(x2, y2)):
+        assert max(place.distance(one.boundary), place.distance(other.boundary)) < 0.02
+    assert math.dist((x, y), (x2, y2)) > 2.0  # a pitch is 3.5 mm
 
 
 def test_a_pendulum_drawn_aside_hangs_down_and_beats_by_its_length(tmp_path: Path) -> None:

@@ -1,7 +1,5 @@
 """Is a Geneva drive known as one, whatever its layers are called, and does its crank carry the wheel on?"""
 
-from __future__ import annotations
-
 import math
 import random
 from dataclasses import replace

@@ -70,7 +70,28 @@ def _layout(moving: Sequence[Role], facings: Sequence[Facing], apart: bool, left
         if left_out:
             yield f"{names} never come within reach of each other: what should touch may be among what was left out"
             return
+        missing = list(_missing(moving))
+        yield from missing
+        if missing:
+            return
         yield f"{names} lie side by side and never come within reach of each other, as in a layout for cutting: {cure}"
+
+
+def _missing(moving: Sequence[Role]) -> Iterator[str]:
+    """A follower that stands off its cam, or a click off its wheel: by how much, and what would close that."""
+    under = first_of(moving, WHEEL) or first_of(moving, DRIVER)
+    for role in (role for role in moving if role.task == CLICK):
+        if under is None or under.part.centre is None or role.part.centre is None:
+            continue
+        at = under.part.centre.at
+        highest = max(ring(piece.points, at)[1] for piece in under.part.pieces)
+        gap = 1e3 * (min(ring(piece.points, at)[0] for piece in role.part.pieces) - highest)
+        if 0.0 < gap < 1e3 * highest:
+            yield (
+                f"{role.name} stands {gap:.3g} mm off {under.name} where {under.name} is highest, out of reach of it as it is "
+                f"proposed. Draw it touching; or let its spring, or gravity, close the gap: declare their contact under "
+                f'[[contacts]], and see that [bodies.{role.name}] can move there, by its pivot or by motion = "slide"'
+            )
 
 
 def _cure(role: Role) -> str:
@@ -177,9 +198,9 @@ def _overlapping(facings: Sequence[Facing]) -> Iterator[str]:
         if facing.why == CUTTING:
             names = f"{facing.first_layer} of {facing.first.name} and {facing.second_layer} of {facing.second.name}"
             yield (
-                f"{names} overlap as they are drawn, by {facing.overlap:.0%} of the smaller one; their names say that they touch, "
-                "so that they are taken to, from a start at which they are clear of each other. If they lie at different "
-                "heights, take that contact out"
+                f"{names} overlap as they are drawn, by {facing.overlap:.0%} of the smaller one; by their names they touch, so "
+                "that they are taken to, from a start at which they are clear of each other. If they lie at different heights, "
+                "take that contact out"
             )
 
 

@@ -1,8 +1,8 @@
 """Is there a pin that drives a slotted wheel, as in a Geneva drive, and what turns with it?
 
-A pin by itself shows no pivot, and names say little: what one calls PLATEAU another calls DISCO or C. Two lengths decide. A pin
-enters a slot along the slot, so that its distance from the crank's axis is sin(180°/slots) of the distance between the axes; and
-it is as wide as the slot.
+A pin by itself shows no pivot, and names say little: what one calls PLATEAU another calls DISCO or C. Two lengths decide. A
+pin enters a slot along the slot, so that its distance from the crank's axis is sin(180°/slots) of the distance between the
+axes; and it is as wide as the slot.
 """
 
 from __future__ import annotations

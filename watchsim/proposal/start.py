@@ -135,21 +135,29 @@ def _lift(swinging: Role, wheel: Role) -> Amount:
     """From where one pallet lets go of the teeth to where the other does."""
     if not swinging.little:
         return Amount(FULL_LIFT, "usual for a cylinder; the drawing does not say where the impulse begins and ends")
+    released = _releases(swinging, wheel)
+    if released is None:
+        return Amount(USUAL_LIFT, "usual; the drawing does not show two pallets in the teeth")
+    return Amount(abs(released[0] - released[1]), "from where one pallet lets go of the teeth to where the other does")
+
+
+def _releases(swinging: Role, wheel: Role) -> tuple[float, float] | None:
+    """How far an anchor is turned (rad) where each of its pallets lets go of the teeth; None without two."""
     teeth, centre = toothing(wheel.part), swinging.part.centre
-    usual = Amount(USUAL_LIFT, "usual; the drawing does not show two pallets in the teeth")
     if teeth is None or centre is None:
-        return usual
+        return None
     at, axis = np.array(centre.at), np.array(teeth.centre) - np.array(centre.at)
     points = np.concatenate([piece.points for piece in swinging.part.pieces]) - at
     side = np.sign(axis[0] * points[:, 1] - axis[1] * points[:, 0])
     released = []
     for pallet in (points[side > 0.0], points[side < 0.0]):
         inward = pallet[np.hypot(*(pallet - axis).T) < 1.5 * teeth.outer]
-        clear = (way for angle in LIFTS for way in (angle, -angle) if _is_clear(inward, axis, way, teeth.outer))
-        released.append(next(clear, None) if len(inward) else None)
+        drawn = len(inward) > 0 and _is_clear(inward, axis, 0.0, teeth.outer)
+        ways = (way for angle in LIFTS for way in (angle, -angle) if _is_clear(inward, axis, way, teeth.outer) != drawn)
+        released.append(next(ways, None) if len(inward) else None)
     if released[0] is None or released[1] is None or not 0.0 < abs(released[0] - released[1]) < 0.5:
-        return usual
-    return Amount(abs(released[0] - released[1]), "from where one pallet lets go of the teeth to where the other does")
+        return None
+    return released[0], released[1]
 
 
 def _is_clear(points: Floats, wheel: Floats, angle: float, outer: float) -> bool:
@@ -430,7 +438,7 @@ class Start:
 def start_of(roles: Sequence[Role], facings: Sequence[Facing], direction: int) -> Start:
     """Free angles, as far as they can be found: the lever at its bank, a tooth of the wheel, driven that way, at the stone."""
     swinging = first_of(roles, OSCILLATOR)
-    rest, rest_why = _rest(swinging, first_of(roles, LEVER), facings)
+    rest, rest_why = _rest(swinging, first_of(roles, LEVER), first_of(roles, WHEEL), facings)
     angles = dict.fromkeys((role.name for role in roles if role.moves), 0.0)
     why: dict[str, str] = {}
     waiting, swing = None, 0.0
@@ -456,14 +464,19 @@ def start_of(roles: Sequence[Role], facings: Sequence[Facing], direction: int) -
     return Start(angles, why, rest, rest_why, swing)
 
 
-def _rest(swinging: Role | None, lever: Role | None, facings: Sequence[Facing]) -> tuple[float, str]:
-    """How far the balance must be turned for its pin to point at the lever."""
+def _rest(swinging: Role | None, lever: Role | None, wheel: Role | None, facings: Sequence[Facing]) -> tuple[float, str]:
+    """How far the balance must be turned for its pin to point at the lever, or an anchor to stand midway."""
     drawn = "as it is drawn"
     if swinging is None or swinging.part.centre is None:
         return 0.0, drawn
     if swinging.little:
         tilt = _hanging(swinging)[0]
-        return (-tilt, "so that it hangs straight down; it is drawn aside") if AT_LEAST < abs(tilt) < ASIDE else (0.0, drawn)
+        if AT_LEAST < abs(tilt) < ASIDE:
+            return -tilt, "so that it hangs straight down; it is drawn aside"
+        released = _releases(swinging, wheel) if wheel is not None else None
+        middle = 0.5 * sum(released) if released is not None else 0.0
+        aside = released is not None and abs(middle) > OFF_BEAT * abs(released[0] - released[1])
+        return (middle, "midway between where its pallets let the teeth go; it is drawn aside") if aside else (0.0, drawn)
     if lever is None or any(facing.first.on or facing.second.on for facing in facings):
         return 0.0, drawn
     touching = {layer for facing in facings for role, layer in facing.sides if role is swinging}
@@ -480,6 +493,7 @@ def _rest(swinging: Role | None, lever: Role | None, facings: Sequence[Facing]) 
     return turn, "so that its pin points at the lever"
 
 
+OFF_BEAT = 0.25  # of the lift: an anchor that is drawn so far from the middle is drawn as it swings
 AT_LEAST, ASIDE = math.radians(0.02), math.radians(10.0)  # a pendulum drawn so far from hanging is drawn as it swings
 
 

@@ -14,11 +14,16 @@ import numpy as np
 from watchsim.analysis.summary import summary
 from watchsim.analysis.verdict import verdict
 from watchsim.escapement.measure import measure
+from watchsim.escapement.turn import turn
+from watchsim.geometry.primitives import Point
+from watchsim.mechanism.overlap import chord_points, placed
+from watchsim.proposal.pieces import ring
 from watchsim.proposal.propose import SCENE, Proposal, propose
 from watchsim.proposal.words import CLICK, DRIVER, OSCILLATOR, WHEEL
+from watchsim.scene.errors import SceneError
 from watchsim.scene.load import load
-from watchsim.scene.roles import frequency, swings
-from watchsim.scene.scene import Scene
+from watchsim.scene.roles import frequency, oscillators, roles, swings
+from watchsim.scene.scene import Body, Scene
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.state import Stop
 from watchsim.simulation.trajectory import Trajectory
@@ -29,11 +34,13 @@ PATIENCE = 10.0  # s of processor time: a mechanism that takes longer to compute
 ON = 0.9  # of a pitch: a wheel that goes on by less in all that time stands
 STILL = 1e-6  # rad or m: what moves less in all that time does not move
 BY_TRIAL = "tried both ways, it works this way only"
+ALIKE = "it works either way"
 BY_FUNCTION = "only this way do its teeth lock and drive, as check --turn measures them"
-EITHER_WAY = (
-    "its teeth lock and drive either way, as check --turn measures them; it is driven the way that their tips lean: other "
-    "inertias or another torque may mend what the trial shows"
-)
+EITHER_WAY = "its teeth lock and drive either way, as check --turn measures them; it is driven the way that their tips lean"
+JAMS = "jams between two teeth"
+MENDED = "other inertias or another torque may mend what the trial shows"
+CHORD, HELD = 1e-4, 1e-3  # of an outline, of the wheel: its chords, and how near to them something is held
+NEAR = 1.25  # times the swing that a scene starts with: a jam within that is in the way
 
 
 def tried(paths: Sequence[Path]) -> Proposal:
@@ -56,20 +63,25 @@ def tried(paths: Sequence[Path]) -> Proposal:
     here, there = (_is_measured(found), works), (_is_measured(other), works_there)
     by_function, leans = here[0] != there[0], not found.either_way
     if here[0] and there[0] and leans:  # the drawing says more than a trial
-        return found.doubting([*faults, EITHER_WAY])
+        return found.doubting([*faults, _in_doubt(EITHER_WAY, faults)])
     if here == there:
-        return found.doubting(faults)
+        return (propose(paths, found.way, ALIKE) if works and not leans else found).doubting(faults)
     if there > here or not leans:
         found = propose(paths, (other if there > here else found).way, BY_FUNCTION if by_function else BY_TRIAL)
         faults = faults_there if there > here else faults
     stepped = CLICK in tasks and DRIVER not in tasks
     if by_function and faults:
-        faults.append(f"{BY_FUNCTION}: other inertias or another torque may mend what the trial shows")
+        faults.append(_in_doubt(BY_FUNCTION, faults))
     elif not by_function and (stepped or (there > here and leans and any(role.little for role in found.roles))):
         faults.append(
             f"which way the wheel is driven is a guess: {BY_TRIAL}, with inertias, springs and a torque that are guesses"
         )
     return found.doubting(faults)
+
+
+def _in_doubt(why: str, faults: Sequence[str]) -> str:
+    """Why it is driven that way, and what may mend what a trial showed, unless that is an anchor that jams."""
+    return why if any(JAMS in words for words in faults) else f"{why}: {MENDED}"
 
 
 class _TakesLong(Exception):
@@ -80,6 +92,49 @@ def _is_measured(found: Proposal) -> bool:
     """Do both pallets lock teeth, lift, and let them drop?"""
     with tempfile.TemporaryDirectory() as folder:
         return measure(_loaded(found, Path(folder)), few=1, fork_too=False).pallets is not None
+
+
+def _jam(scene: Scene) -> str | None:
+    """Where an anchor that is led through its swing, the wheel pressed on, is held between two teeth; None where nowhere."""
+    swings, wheel = roles(scene).oscillator, roles(scene).wheel
+    spring = next((one for one in oscillators(scene) if one.body == swings), None)
+    if swings is None or wheel is None or spring is None or roles(scene).lever is not None:
+        return None
+    try:
+        found = turn(scene, NEAR * abs(scene.body(swings).angle - spring.rest))
+    except SceneError:
+        return None
+    if found.cycle.jam is None:
+        return None
+    poses = {name: float(value) for name, value in zip(found.names, found.cycle.rows[-1], strict=True)}
+    touched = _held(scene.body(swings), scene.body(wheel), poses, found.teeth)
+    if len(touched) < 2:
+        return None
+    (x, y), (x2, y2) = ((1e3 * px, 1e3 * py) for px, py in touched[:2])
+    return (
+        f"{swings} {JAMS} of {wheel}: led to {math.degrees(poses[swings]):.3g}°, it is held at ({x:.4g}, {y:.4g}) and "
+        f"({x2:.4g}, {y2:.4g}) mm, and {wheel}, at {math.degrees(poses[wheel]):.3g}°, cannot give way. No inertia or "
+        f"torque mends that: make the pallet thinner, cut the teeth deeper, or let {swings} swing less"
+    )
+
+
+def _held(anchor: Body, wheel: Body, poses: Mapping[str, float], teeth: int) -> list[Point]:
+    """The places (m) at which an anchor touches, the nearest first; two on one tooth count once."""
+    one, other = (
+        [placed(chord_points(loop, CHORD * loop.length), (*body.position, poses[body.name])) for loop in body.loops]
+        for body in (anchor, wheel)
+    )
+    outer = max(math.dist(place, wheel.position) for place in np.concatenate(other).tolist())
+    found = [
+        (min(ring(loop, (x, y))[0] for loop in others), (x, y))
+        for mine, others in ((one, other), (other, one))
+        for x, y in np.concatenate(mine).tolist()
+    ]
+    held: list[Point] = []
+    for away, place in sorted(found):
+        if away <= HELD * outer and all(math.dist(place, there) > 0.5 * math.pi / teeth * outer for there in held):
+            held.append(place)
+    return held
 
 
 def _loaded(found: Proposal, folder: Path) -> Scene:
@@ -125,6 +180,9 @@ def _wrong(run: Trajectory, found: Mapping[str, Any], proposal: Proposal) -> Ite
     tried, judged = f"in a trial of {run.simulated:.3g} s", verdict(run)
     if not judged.works:
         yield f"{tried} it does not work: {judged.message}"
+        jam = _jam(run.scene)
+        if jam is not None:
+            yield jam
         return
     if run.stop is not None and Stop(run.stop).gave_up:
         yield f"{tried} it ends: {run.stop_message}"

@@ -22,8 +22,8 @@ _PARTS = {
     LEVER: "lever anchor detent passing anker hemmstück hebel wippe ancre détente bascule ancora leva",
     CLICK: "click pawl jumper follower tappet rack klinke sperrklinke sperrkegel raste springer fühler rechen cliquet sautoir "
     "palpeur râteau nottolino cricco cricchetto saltarello scatto",
-    DRIVER: "driver crank motor antrieb treiber moteur motore finger cam snail kurbel mitnehmer nocken kurvenscheibe schnecke manivelle doigt came limaçon "
-    "manovella dito camma chiocciola",
+    DRIVER: "driver crank motor finger cam snail antrieb treiber kurbel mitnehmer nocken kurvenscheibe schnecke moteur "
+    "manivelle doigt came limaçon motore manovella dito camma chiocciola",
     OSCILLATOR: "balance pendulum foliot unruh unruhe pendel balancier pendule bilanciere pendolo",
     FIXED: "banking bankings bank banks plate frame bridge wall stop stops fixed ground base cock anschlag anschläge platine "
     "brücke kloben gestell pont coq butée butées étoqueau étoqueaux platina ponte arresto arresti",
