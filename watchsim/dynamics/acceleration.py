@@ -187,7 +187,7 @@ def _solve(model, closed, m, bearings, speed_zero, system, problem):
         fill_matrix(system.G, m, elements, problem)
         load_bearings(system.G, system.b, m, elements, bearings, problem)
         fill_rhs(problem.loaded, m, elements, problem)
-    pressed = press_unloaded(model, closed, m, system, problem)
+    pressed = press_unloaded(model, closed, m, elements, system, problem)
     solver = solve_contacts(m, elements, bearings, Level.ACCELERATION, problem)
     if pressed and solver == Solver.FAILED:
         fill_rhs(problem.loaded, m, elements, problem)

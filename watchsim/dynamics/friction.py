@@ -358,22 +358,26 @@ def _determinant(G, along, rows, n, share, A):
 
 
 @kernel
-def press_unloaded(model, closed, m, system, problem):
+def press_unloaded(model, closed, m, elements, system, problem):
     """Settle what happens where nothing presses a contact that would jam as it slides; True if any is pressed.
 
     There the laws have more than one solution, and the rounding of a load that is zero would choose between them. Without
     slip the contact holds, as it would under any load however small: it is pressed by next to nothing. With slip it goes
-    on without a force.
+    on without a force. The load pushes the bodies, not their gap alone: what else holds them might contradict that.
     """
-    pressed = False
+    pressed, G = False, system.G
     for i in range(m):
         drag, slip = problem.friction_sign[2 * i + 1] * problem.drag[i], abs(problem.loaded[2 * i + 1])
-        if not jams(system.G, drag, m, i) or not _is_unloaded(model, closed, i, system, problem.loaded[2 * i]):
+        if not jams(G, drag, m, i) or not _is_unloaded(model, closed, i, system, problem.loaded[2 * i]):
             continue
         if problem.element[i] < 0:
             problem.rhs[i] = max(0.0, problem.rhs[i])
         elif slip != 0.0:
-            problem.rhs[i] -= NUDGE * slip * problem.unit[i]
+            load = NUDGE * slip / max(G[2 * i, 2 * i], abs(G[2 * i + 1, 2 * i]))
+            for line in range(m + elements):
+                row = 2 * line if line < m else element_row(problem, m, line - m)
+                unit = problem.unit[line if line < m else problem.block[line - m]]
+                problem.rhs[line] -= load * unit * problem.friction_sign[row] * G[row, 2 * i]
             pressed = True
     return pressed
 
