@@ -264,6 +264,8 @@ FORCE_NOISE = 1e-14
 BEGIN_SLACK = 0.5
 # Times more lenient when modes come back at one instant. Large: coarse terms; small: more rounds.
 LENIENCE_STEP = 10.0
+# Times more lenient at most where a bearing nearly seizes and no step is made. Large: stops what may go on; small: ends runs.
+NEARLY_SEIZED = 1e3
 # The most lenient terms. Large: late detachment there; small: the run ends where rounding is large.
 MOST_LENIENT = 1e7
 

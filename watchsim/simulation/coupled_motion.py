@@ -361,11 +361,22 @@ def _will_change(model, table, t):
 
 
 @kernel
-def find_sleepers(model, regime, options, time, event, f, out_u, out_a):
+def has_stopped(model, island, u, a, options, event):
+    """True if every coordinate of the island is still, with the magnitudes of the forces on it in `event.terms`."""
+    _share_terms(model, event.terms)
+    for i in range(len(event.label)):
+        if event.label[i] == island and not _is_still(model.coordinates[i], u[i], a[i], options.sleep, options, event.terms[i]):
+            return False
+    return True
+
+
+@kernel
+def find_sleepers(model, regime, options, time, stands, event, f, out_u, out_a):
     """Set `regime.awake`: an island with a contact or a bearing that holds sleeps if it is still and nothing depends on time.
 
     The f contacts in force are in `regime.active`, their islands in `event.label`, the magnitudes of the forces on each
-    coordinate in `event.terms`. What sleeps has neither velocity nor acceleration.
+    coordinate in `event.terms`. What sleeps has neither velocity nor acceleration. `stands`: also where the case is shaken, as
+    long as standing.py finds that it is held.
     """
     label, touched = event.label, event.touched
     n = len(label)
@@ -385,7 +396,7 @@ def find_sleepers(model, regime, options, time, event, f, out_u, out_a):
     for j in range(len(model.tables)):
         if _will_change(model, model.tables[j], time):
             _wake(label, label[model.tables[j].coordinate], regime.awake)
-    if is_shaken(model, time):
+    if is_shaken(model, time) and not stands:
         for k in range(len(model.weighed)):
             first = model.bodies[model.weighed[k].body].first
             if not model.coordinates[first].linear:

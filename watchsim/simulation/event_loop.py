@@ -67,6 +67,7 @@ from watchsim.simulation.scratch import (
     scratch_by_reference,
     state_by_reference,
 )
+from watchsim.simulation.standing import first_fall, stands_shaken, step_while_standing
 from watchsim.simulation.state import NO_CONTACT, Stop
 from watchsim.simulation.step_path import (
     add_flight_sums,
@@ -85,6 +86,8 @@ from watchsim.tolerances import (
     FLIGHT_PHASE,
     FURTHEST_SIZES,
     LEFT_PRIMITIVE,
+    LENIENCE_STEP,
+    NEARLY_SEIZED,
     ROUNDS,
     SAME_INSTANT,
 )
@@ -295,7 +298,8 @@ def finish_event(model, state, f, options, scratch, record):
         if m > 0:
             mark_loose(model, rest, m, state.regime.mode, event.label, state.a, event.loose)
     f = _closed_of(state.regime.mode, f, state.regime.active, state.regime.active)
-    find_sleepers(model, state.regime, options, state.clock.time, event, f, state.u, state.a)
+    stands = state.instant.lenience > 1.0  # their modes came back at this instant
+    find_sleepers(model, state.regime, options, state.clock.time, stands, event, f, state.u, state.a)
     _list_awake_first(model, state.regime, f, event, state.instant)
 
 
@@ -347,11 +351,28 @@ def _room_left(record, contacts):
 
 
 @kernel
+def _without_step(model, state, options, jammed):
+    """What follows where steps get too small; returns (Stop code, event?).
+
+    A bearing at the limit of its friction that contacts hold as well may be held below it from here on, and one whose load
+    grows without bound seizes: decide anew.
+    """
+    if state.clock.time - state.clock.event <= SAME_INSTANT * options.accumulation_time or len(model.bearings) == 0:
+        state.instant.lenience *= LENIENCE_STEP  # what is nearly so seizes, too
+        if not jammed or state.instant.lenience > NEARLY_SEIZED:
+            return Stop.BEARING_JAMS if jammed else Stop.STEP_TOO_SMALL, False
+    state.instant.touched, state.instant.struck = NO_CONTACT, 0
+    return Stop.RUNNING, True
+
+
+@kernel
 def _smooth_step(model, cells, state, options, end_time, scratch, record):
     """One smooth step up to its first event; returns (Stop code, event?)."""
-    left = end_time - state.clock.time
+    left = remaining = end_time - state.clock.time
     flying, spacing, code = can_fly(model, state.regime.awake, state.instant.awake_contacts), math.inf, NONE_FIRED
-    proposed = state.clock.step
+    proposed, standing = state.clock.step, stands_shaken(model, state.regime, state.clock.time)
+    if standing:
+        left = min(left, step_while_standing(model, options, state.clock.time))
     if flying:
         length, spacing = flight_length(model, state.regime, state.q, state.u, options, state.clock.time)
         begin_flight(model, state.regime, state.q, state.u, state.clock.time, min(length, left), scratch.step)
@@ -367,13 +388,7 @@ def _smooth_step(model, cells, state, options, end_time, scratch, record):
             return Stop.CELL_UNKNOWN, False
         made, smallest = coupled_step(model, state, options, longest, soonest, scratch.smooth)
         if not made:
-            # A bearing at the limit of its friction that contacts hold as well may be held below it from here on, and one whose
-            # load grows without bound seizes: decide anew.
-            jammed = scratch.smooth.held.jammed
-            if state.clock.time - state.clock.event <= SAME_INSTANT * options.accumulation_time or len(model.bearings) == 0:
-                return Stop.BEARING_JAMS if jammed else Stop.STEP_TOO_SMALL, False
-            state.instant.touched, state.instant.struck = NO_CONTACT, 0
-            return Stop.RUNNING, True
+            return _without_step(model, state, options, scratch.smooth.held.jammed)
         leave, code = first_leave(model, state.regime, options, smallest, scratch.smooth, state.counts)
     step = scratch.step
     length = step.span.length
@@ -384,8 +399,11 @@ def _smooth_step(model, cells, state, options, end_time, scratch, record):
     if not known:
         state.clock.step = proposed
         return Stop.CELL_UNKNOWN, False
+    fall = first_fall(model, state, min(length, touch, leave), options, scratch) if standing else math.inf
+    if fall < math.inf:
+        contact, leave, code = NO_CONTACT, fall, NONE_FIRED
     end = min(length, touch, leave)
-    state.clock.time = end_time if end == left else step.span.start + end
+    state.clock.time = end_time if end == remaining else step.span.start + end
     if flying:
         state.counts.flights += 1
         add_flight_sums(model, step, end, state.sums)

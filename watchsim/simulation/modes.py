@@ -32,6 +32,7 @@ from watchsim.tolerances import (
     LENIENCE_STEP,
     LOAD_ROUGH,
     MOST_LENIENT,
+    NEARLY_SEIZED,
     PAINLEVE,
     RATE_FLOOR,
     RATE_ROUNDING,
@@ -96,7 +97,11 @@ def decide(model, state, island, m, options, system, problem, event, out_grip):
         press_contacts(model, event.rest, r, system.force, system)
         changed = rub(model, out_grip, system)
         if _hold(r, bearings, out_grip, system, problem) and has_settled(changed, number):
-            problem.last.jammed = 1 if _seizes(model, event.rest, r, out_grip, system) else 0
+            problem.last.jammed = (
+                1
+                if _seizes(model, event.rest, r, out_grip, PAINLEVE * min(state.instant.lenience, NEARLY_SEIZED), system)
+                else 0
+            )
             return r, True
     return r, _decide_coupled(model, state, island, r, options, system, problem, event, out_grip)
 
@@ -122,15 +127,17 @@ def _decide_coupled(model, state, island, r, options, system, problem, event, ou
                 break
             if has_settled(turn_to_loads(r, bearings + last.sliders, system.force, problem), number):
                 last.coupled, last.sliders = 0, 0
-                last.jammed = 1 if _seizes(model, rest, r, out_grip, system) else 0
+                last.jammed = (
+                    1 if _seizes(model, rest, r, out_grip, PAINLEVE * min(state.instant.lenience, NEARLY_SEIZED), system) else 0
+                )
                 return True
     last.coupled, last.sliders = 0, 0
     return False
 
 
 @kernel
-def _seizes(model, rest, r, grip, system):
-    """True if the force of a contact is what the friction that it makes in bearings makes of next to nothing (`PAINLEVE`).
+def _seizes(model, rest, r, grip, share, system):
+    """True if the force of a contact is what the friction that it makes in bearings makes of that share of it.
 
     It grows without bound as it comes to pass a pivot at friction times radius, where none goes with its load any more.
     """
@@ -147,7 +154,7 @@ def _seizes(model, rest, r, grip, system):
             share = abs(rest.w_N[i, k] * system.inverse[j])
             terms += share * (abs(system.h[j] + drag) + abs(drag - own))
             rubs += share * abs(own)
-        if PAINLEVE * presses > terms and 2.0 * rubs > presses:
+        if share * presses > terms and 2.0 * rubs > presses:
             return True
     return False
 
