@@ -361,11 +361,11 @@ def _will_change(model, table, t):
 
 
 @kernel
-def has_stopped(model, island, u, a, options, event):
-    """True if every coordinate of the island is still, with the magnitudes of the forces on it in `event.terms`."""
+def has_stopped(model, island, u, a, share, options, event):
+    """True if every coordinate of the island is still, but for that `share` of the forces on it, sums in `event.terms`."""
     _share_terms(model, event.terms)
     for i in range(len(event.label)):
-        if event.label[i] == island and not _is_still(model.coordinates[i], u[i], a[i], options.sleep, options, event.terms[i]):
+        if event.label[i] == island and not _is_still(model.coordinates[i], u[i], a[i], share, options, event.terms[i]):
             return False
     return True
 

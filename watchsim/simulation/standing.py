@@ -26,6 +26,7 @@ from watchsim.simulation.coupled_motion import (
 )
 from watchsim.simulation.modes import decide
 from watchsim.simulation.options import longest_step
+from watchsim.tolerances import LOAD_ROUGH
 
 LOOKS = 8  # along a step
 LONGEST = 0.1  # of the longest step: between two of them loads change little
@@ -115,5 +116,7 @@ def _stands(model, state, island, m, options, scratch):
     accelerate(model, event.rest, 0, system, system.a)
     apply(event.rest, r, system.force, system.inverse, system.a)
     begin_terms(system.h, event.terms)
+    for i in range(len(event.terms)):
+        event.terms[i] += system.dry[i]  # of what a bearing at its limit bears little is left in h
     add_terms(event.rest, r, system.force, event.terms)
-    return has_stopped(model, island, state.u, system.a, options, event)
+    return has_stopped(model, island, state.u, system.a, options.sleep + LOAD_ROUGH, options, event)
