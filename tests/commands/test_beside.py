@@ -18,7 +18,6 @@ from watchsim.scene.load import load
 from watchsim.simulation.simulate import simulate
 
 SAME = ("events.csv", "beats.csv", "phases.csv", "plots/kinematics.png", "plots/last_beats.png")
-PLOT = "plots/last_beats.png"
 COMMAND = """
 import os, signal, sys
 signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored where the tests run in the background

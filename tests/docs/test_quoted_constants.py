@@ -30,14 +30,7 @@ from watchsim.simulation import step_path as root_bracket
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 WORDS = {
-    "twice": 2,
-    "two": 2,
-    "three": 3,
-    "seven": 7,
-    "eight": 8,
-    "ten": 10,
-    "a fifth": 0.2,
-    "a tenth": 0.1,
+    **{"twice": 2, "two": 2, "three": 3, "seven": 7, "eight": 8, "ten": 10, "a fifth": 0.2, "a tenth": 0.1},
     "an eighth": 0.125,
 }
 WORDS |= {"sixteenth": 16, "a millionth": 1e-6}

@@ -43,19 +43,9 @@ def test_every_layer_is_closed_and_nothing_is_wrong(assembly: Drawing) -> None:
     assert assembly.units == "mm"
     counts = {layer: len(loops(assembly, layer)) for layer in assembly.layers}
     assert counts == {
-        "ESCAPE_WHEEL_z-1.30": 5,
-        "LEVER_z-1.20": 1,
-        "PALLET_A": 1,
-        "PALLET_B": 1,
-        "LEVER_z-1.45": 4,
-        "LEVER_z-0.90": 2,
-        "BALANCE_z-1.10_IMPULSE": 2,
-        "BALANCE_z-1.40": 1,
-        "BALANCE_z-0.80": 1,
-        "BALANCE_RIM_z0.00": 4,
-        "STOP_A": 1,
-        "STOP_B": 1,
-        "PIVOTS": 0,
+        **{"ESCAPE_WHEEL_z-1.30": 5, "LEVER_z-1.20": 1, "PALLET_A": 1, "PALLET_B": 1, "LEVER_z-1.45": 4, "LEVER_z-0.90": 2},
+        **{"BALANCE_z-1.10_IMPULSE": 2, "BALANCE_z-1.40": 1, "BALANCE_z-0.80": 1, "BALANCE_RIM_z0.00": 4, "STOP_A": 1},
+        **{"STOP_B": 1, "PIVOTS": 0},
     }
 
 

@@ -510,11 +510,8 @@ def test_names_in_space_stand_apart_and_on_their_parts(profile: str, tmp_path: P
             page.wait_for_timeout(100)
             names = page.evaluate("watchsim.names()")
             assert len(names) >= 3
-            for i, one in enumerate(names):
-                for other in names[:i]:
-                    (a, b, c, d), (e, f, g, h) = one["box"], other["box"]
-                    assert c < e or g < a or d < f or h < b, (one["text"], other["text"])
-                    assert not crossing((one["from"], one["at"]), (other["from"], other["at"])), (one["text"], other["text"])
+            check_apart(names)
+            for one in names:
                 if one["body"] >= 0:
                     alone = shot_of(page, f"watchsim.numbered({one['body']})")
                     x, y = np.array(one["at"]) * alone.shape[1] / page.evaluate("document.getElementById('stage').clientWidth")
@@ -579,6 +576,14 @@ def crossing(one: Any, other: Any) -> bool:
     (a, b), (c, d) = (np.array(line) for line in (one, other))
     side = lambda p, q, r: np.sign((q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]))  # noqa: E731
     return bool(side(a, b, c) * side(a, b, d) < 0 and side(c, d, a) * side(c, d, b) < 0)
+
+
+def check_apart(names: list[dict[str, Any]]) -> None:
+    """Neither do names lie on each other, nor do their lines cross."""
+    for one, other in itertools.combinations(names, 2):
+        (a, b, c, d), (e, f, g, h) = one["box"], other["box"]
+        assert c < e or g < a or d < f or h < b, (one["text"], other["text"])
+        assert not crossing((one["from"], one["at"]), (other["from"], other["at"])), (one["text"], other["text"])
 
 
 def test_the_page_of_a_clock_opens_with_its_escapement_and_the_whole_beside_it(tmp_path: Path) -> None:
@@ -696,11 +701,8 @@ def test_names_stand_apart_and_on_their_parts(profile: str, tmp_path: Path) -> N
             page.evaluate("t => watchsim.seek(t)", t)
             names = page.evaluate("watchsim.names()")
             assert len(names) >= 3
-            for i, one in enumerate(names):
-                for other in names[:i]:
-                    (a, b, c, d), (e, f, g, h) = one["box"], other["box"]
-                    assert c < e or g < a or d < f or h < b, (one["text"], other["text"])
-                    assert not crossing((one["from"], one["at"]), (other["from"], other["at"])), (one["text"], other["text"])
+            check_apart(names)
+            for one in names:
                 if one["body"] < 0:
                     continue
                 body = run.scene.bodies[one["body"]]

@@ -21,12 +21,7 @@ from watchsim.scene.roles import with_anchor
 from watchsim.simulation.trajectory import Trajectory
 
 MOVING = {
-    "swiss_lever": 1.2,
-    "graham": 1.5,
-    "pin_pallet": 1.2,
-    "detent": 1.2,
-    "cylinder": 1.2,
-    "tourbillon": 0.6,
+    **{"swiss_lever": 1.2, "graham": 1.5, "pin_pallet": 1.2, "detent": 1.2, "cylinder": 1.2, "tourbillon": 0.6},
     "grasshopper": 1.0,
 }
 

@@ -430,27 +430,11 @@ number = -1.5e-3
 def test_lines_of_all_kinds_of_keys():
     lines = key_lines(TEXT)
     expected = {
-        "top": 2,
-        "scene": 3,
-        "scene.title": 4,
-        "scene.quoted key": 5,
-        "bodies.wheel": 9,
-        "bodies.wheel.position": 10,
-        "bodies.wheel.position.0": 11,
-        "bodies.wheel.position.1": 12,
-        "bodies.wheel.nested.key": 14,
-        "springs": 15,
-        "springs.0": 15,
-        "springs.0.body": 16,
-        "springs.1": 17,
-        "springs.1.frequency": 18,
-        "bodies.wheel.solids.0.layer": 20,
-        "bodies.wheel.solids.1.layer": 22,
-        "expect.amplitude": 24,
-        "expect.amplitude.tolerance": 24,
-        "expect.polygon.0": 25,
-        "expect.polygon.1": 26,
-        "expect.polygon.1.0": 26,
+        **{"top": 2, "scene": 3, "scene.title": 4, "scene.quoted key": 5, "bodies.wheel": 9, "bodies.wheel.position": 10},
+        **{"bodies.wheel.position.0": 11, "bodies.wheel.position.1": 12, "bodies.wheel.nested.key": 14, "springs": 15},
+        **{"springs.0": 15, "springs.0.body": 16, "springs.1": 17, "springs.1.frequency": 18},
+        **{"bodies.wheel.solids.0.layer": 20, "bodies.wheel.solids.1.layer": 22, "expect.amplitude": 24},
+        **{"expect.amplitude.tolerance": 24, "expect.polygon.0": 25, "expect.polygon.1": 26, "expect.polygon.1.0": 26},
         "expect.number": 27,
     }
     assert {key: lines.get(key) for key in expected} == expected

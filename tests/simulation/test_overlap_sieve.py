@@ -117,7 +117,6 @@ def test_within_a_move_there_are_evenly_spaced_instants_by_its_length(seed: int)
 
 # Does the sieve leave to the polygons exactly what shapely finds within half the depth of the shrunk outline?
 
-DEPTH_OVERLAP_SIEVE = 2e-6
 HOLE = dataclasses.replace(circle(1.2 * MM).reversed(), hole=True)
 
 

@@ -88,23 +88,9 @@ SIZE = 3.0  # m
 def test_lengths_and_speeds_go_with_the_size_of_the_scene() -> None:
     found = options_for(SIZE, 1e-9, 0.25)
     expected = {
-        "tolerance": 1e-9,
-        "gap_zero": 3e-13,
-        "gap_close": 6e-10,
-        "behind": 6e-8,
-        "sunk": 6e-5,
-        "extent": 3.6e-10,
-        "speed_zero": 6e-8,
-        "speed_rest": 3e-8,
-        "speed_drift": 6e-8,
-        "force_zero": 1e-10,
-        "accumulation_time": 1e-6,
-        "accumulation_speed": 0.3,
-        "sleep": 1e-9,
-        "row_phase": 0.1,
-        "max_step": 0.25,
-        "natural": math.inf,
-        "size": SIZE,
+        **{"tolerance": 1e-9, "gap_zero": 3e-13, "gap_close": 6e-10, "behind": 6e-8, "sunk": 6e-5, "extent": 3.6e-10},
+        **{"speed_zero": 6e-8, "speed_rest": 3e-8, "speed_drift": 6e-8, "force_zero": 1e-10, "accumulation_time": 1e-6},
+        **{"accumulation_speed": 0.3, "sleep": 1e-9, "row_phase": 0.1, "max_step": 0.25, "natural": math.inf, "size": SIZE},
         "ledger": 0.0,
     }
     assert found._asdict() == pytest.approx(expected, rel=1e-12, abs=0.0)

@@ -139,9 +139,9 @@ class Tape:
     shown_deg: Array
 
 
-def tape(run: Trajectory, found: Beats | None = None) -> Tape:
+def tape(run: Trajectory) -> Tape:
     """Of all beats of a run; ValueError where nothing swings, or none of its beats is heard."""
-    found = beats(run) if found is None else found
+    found = beats(run)
     heard = np.isfinite(found.tick)
     if not heard.any():
         raise ValueError(f"no beat of {found.body} is heard in this run, so there is nothing to write on the paper")

@@ -331,9 +331,9 @@ def headline(run: Trajectory) -> Averages | None:
     return averages(found, last_window(run, found.nominal_period))
 
 
-def mean_over(run: Trajectory, window: Window | None = None, body: str | None = None) -> Averages:
-    """Averages over `window` (s, s; default the last one) for the first sprung body or the one named."""
-    found = beats(run, body)
+def mean_over(run: Trajectory, window: Window | None = None) -> Averages:
+    """Averages over `window` (s, s; default the last one) for the first sprung body."""
+    found = beats(run)
     return averages(found, window or last_window(run, found.nominal_period))
 
 

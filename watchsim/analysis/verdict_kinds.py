@@ -56,10 +56,10 @@ def when(t: float) -> str:
     return f"t = {t:.4f} s"
 
 
-def torque_text(value: float, digits: int = 3) -> str:
+def torque_text(value: float) -> str:
     """Without its sign: what counts is how much. In µN·m, as torques of watches are given, but for those of clocks."""
     size = abs(value)
-    return f"{1e6 * size:.{digits}g} µN·m" if WATCHES[0] <= size < WATCHES[1] else metric(size, "N·m", digits)
+    return f"{1e6 * size:.3g} µN·m" if WATCHES[0] <= size < WATCHES[1] else metric(size, "N·m", 3)
 
 
 def degrees(value: float) -> str:

@@ -14,15 +14,7 @@ from numpy.typing import NDArray
 from watchsim.analysis.balanced_forces import Mechanism, modes_in_force
 from watchsim.analysis.escape_wheel import progress
 from watchsim.analysis.forces import absolute
-from watchsim.analysis.timing import (
-    Beats,
-    Events,
-    between,
-    contact_events,
-    contact_numbers,
-    is_recorded,
-    last_window,
-)
+from watchsim.analysis.timing import Beats, Events, between, contact_events, contact_numbers, is_recorded, last_window
 from watchsim.geometry.loops import Loop, points_along
 from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.scene.roles import drive_direction, keeps_time, may_lock, oscillators, partners, pitch, roles, toothed_sides

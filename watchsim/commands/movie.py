@@ -23,9 +23,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--length", metavar="TIME", help='how long a movie at adaptive speed lasts (default "10 s")')
     parser.add_argument("--fps", metavar="N", type=float, help="frames per second (default 60, GIF 25)")
     parser.add_argument(
-        "--size",
-        metavar="WxH",
-        help='pixels, such as 1280x720; "auto": wide, square or tall, as the mechanism is drawn',
+        "--size", metavar="WxH", help='pixels, such as 1280x720; "auto": wide, square or tall, as the mechanism is drawn'
     )
     parser.add_argument("--dark", action="store_true", help="with a dark background")
     parser.add_argument(

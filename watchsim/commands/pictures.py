@@ -87,12 +87,7 @@ WHOLE_RUN = 10.0  # s that the movie of a whole run takes
 
 
 def pictures(
-    run: Trajectory,
-    plotted: bool,
-    movie: bool,
-    gif: bool,
-    folder: Path | None = None,
-    panels: Kinematics | None = None,
+    run: Trajectory, plotted: bool, movie: bool, gif: bool, folder: Path | None = None, panels: Kinematics | None = None
 ) -> dict[str, Callable[[Path], object]]:
     """Name in the results folder -> what draws it into the file it is given.
 

@@ -28,9 +28,7 @@ def options(parser: argparse.ArgumentParser) -> None:
         f" {ALL}: every one that the run has",
     )
     parser.add_argument(
-        "--bodies",
-        metavar="NAMES",
-        help=f"only these bodies, separated by commas, or {ALL} (default: the first {FIRST})",
+        "--bodies", metavar="NAMES", help=f"only these bodies, separated by commas, or {ALL} (default: the first {FIRST})"
     )
     parser.add_argument(
         "--quantities",

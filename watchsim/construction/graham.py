@@ -262,12 +262,7 @@ def _window(start: float, inner: float, outer: float, half: float) -> Loop:
         lean = math.degrees(math.asin(half / radius))
         ends.append((polar(radius, start + lean), polar(radius, start + 90.0 - lean)))
     (a, b), (c, d) = ends
-    edges: list[Edge] = [
-        Line(*c, *a),
-        arc_between(a, b, (0.0, 0.0), True),
-        Line(*b, *d),
-        arc_between(d, c, (0.0, 0.0), False),
-    ]
+    edges: list[Edge] = [Line(*c, *a), arc_between(a, b, (0.0, 0.0), True), Line(*b, *d), arc_between(d, c, (0.0, 0.0), False)]
     return Loop(tuple(edges), "TEETH", hole=True)
 
 

@@ -46,12 +46,10 @@ def read(
     return assembled(path, ending, lambda: read_content(path, ending, units, fit, section), snap)
 
 
-def read_data(
-    data: bytes, path: Path, units: str | None = None, snap: float = SNAP, fit: float = FIT, section: float | None = None
-) -> Drawing:
+def read_data(data: bytes, path: Path, units: str | None = None, snap: float = SNAP, section: float | None = None) -> Drawing:
     """The same of a file that is in memory; `path` is its name."""
     ending = path.suffix.lower().lstrip(".")
-    return assembled(path, ending, lambda: content_of(data, ending, units, fit, section), snap)
+    return assembled(path, ending, lambda: content_of(data, ending, units, FIT, section), snap)
 
 
 def read_sheet(sheet: Sheet, path: Path, snap: float = SNAP) -> Drawing:

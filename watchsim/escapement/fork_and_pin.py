@@ -176,10 +176,9 @@ class Balance:
         """The first touch of the balance, turned from `start`."""
         return self.hands.touch(self.parts.balance, self.parts.to_balance, self.at(lever, start), sense, reach)
 
-    def lever(self, start: float, balance: float, sense: float, ids: Integers | None = None) -> Touch | None:
+    def lever(self, start: float, balance: float, sense: float) -> Touch | None:
         """The first touch of the lever with the balance, turned from `start`."""
-        ids = self.parts.to_balance if ids is None else ids
-        return self.hands.touch(self.parts.lever, ids, self.at(start, balance), sense, FARTHEST)
+        return self.hands.touch(self.parts.lever, self.parts.to_balance, self.at(start, balance), sense, FARTHEST)
 
     def freedoms(self, start: float, balances: list[float], sense: float, ids: Integers) -> list[float]:
         """How far the lever can be turned from `start` with the balance at each angle, rad; infinite: nothing stops it."""

@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from watchsim.analysis.headlines import readings
 from watchsim.analysis.phases import phases_within
 from watchsim.analysis.summary import summary
-from watchsim.render.encoder import encode, shared_palette
+from watchsim.render.encoder import check_path, encode, shared_palette
 from watchsim.render.marks import ContactMarks, ForceArrows
 from watchsim.render.movie import GIF_FPS, SAMPLES, Film, Plan, adaptive, busy
 from watchsim.render.opening import last_beats, telling
@@ -88,12 +88,7 @@ def card(
 
 def check_card(path: str | os.PathLike[str]) -> Path:
     """The path, if a card can be written there: ValueError for a wrong ending, OSError for a folder."""
-    target = Path(path)
-    if target.suffix.lower() not in ENDINGS:
-        raise ValueError(f"{target}: the ending decides the format of a card; use {' or '.join(ENDINGS)}")
-    if target.is_dir():
-        raise IsADirectoryError(f"{target} is a folder; a card needs the name of a file")
-    return target
+    return check_path(path, ENDINGS, "a card")
 
 
 def _film(run: Trajectory, span: tuple[float, float], plan: Plan, found: list[Any], style: Style, moves: bool) -> Film:
@@ -111,9 +106,7 @@ def _film(run: Trajectory, span: tuple[float, float], plan: Plan, found: list[An
 def _panel(numbers: Mapping[str, Any], style: Style) -> Pixels:
     """The numbers one below the other, what is to be thought of the watch, and who computed it."""
     figure = Figure(
-        figsize=((PANEL + 0.5) / DPI, (SIZE[1] + 0.5) / DPI),
-        dpi=DPI,
-        facecolor=mixed(style.background, style.grid, SHADE),
+        figsize=((PANEL + 0.5) / DPI, (SIZE[1] + 0.5) / DPI), dpi=DPI, facecolor=mixed(style.background, style.grid, SHADE)
     )
     canvas = FigureCanvasAgg(figure)
 

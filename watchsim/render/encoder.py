@@ -82,13 +82,13 @@ AUDIO = "128k"  # bits per second of one channel
 PIPE = 2**20  # bytes: the most that Linux grants anybody
 
 
-def check_path(path: str | os.PathLike[str]) -> Path:
-    """The path, if a movie can be written there: ValueError for a wrong ending, OSError for a folder."""
+def check_path(path: str | os.PathLike[str], endings: tuple[str, ...] = ENDINGS, what: str = "a movie") -> Path:
+    """The path, if `what` can be written there: ValueError for a wrong ending, OSError for a folder."""
     target = Path(path)
-    if target.suffix.lower() not in ENDINGS:
-        raise ValueError(f"{target}: the ending decides the format of a movie; use {' or '.join(ENDINGS)}")
+    if target.suffix.lower() not in endings:
+        raise ValueError(f"{target}: the ending decides the format of {what}; use {' or '.join(endings)}")
     if target.is_dir():
-        raise IsADirectoryError(f"{target} is a folder; a movie needs the name of a file")
+        raise IsADirectoryError(f"{target} is a folder; {what} needs the name of a file")
     return target
 
 

@@ -55,7 +55,7 @@ def strong(name: str) -> str:
     return PHASE_LINES.get(name, FAINT)
 
 
-def names_in(beats: Iterable[Sequence[Phase]], left_out: Sequence[str] = ("locked",), banded: bool = True) -> dict[str, str]:
+def names_in(beats: Iterable[Sequence[Phase]], banded: bool = True) -> dict[str, str]:
     """The phases that last, by the names of their colours, in the order of a beat; each with its words in a key.
 
     banded  an impulse that follows another has its own colour, and where its words are the same in all beats they say on what
@@ -65,7 +65,7 @@ def names_in(beats: Iterable[Sequence[Phase]], left_out: Sequence[str] = ("locke
         impulses = 0
         for phase in beat:
             impulses += phase.name == "impulse"
-            if phase.name in left_out or not phase.end > phase.start:
+            if phase.name == "locked" or not phase.end > phase.start:
                 continue
             name = AGAIN if banded and phase.name == "impulse" and impulses == 2 else phase.name
             words.setdefault(name, set()).add(f"{phase.name} on {phase.on}" if banded and phase.on else name)
@@ -88,11 +88,11 @@ def shade(axes: Axes, phases: Iterable[Phase], zero: float = 0.0, factor: float 
         axes.add_artist(Rectangle((start, 0.0), end - start, 1.0, color=shown, linewidth=0.0, zorder=0, transform=place))
 
 
-def name_above(axes: Axes, stages: Sequence[Stage], zero: float, factor: float = 1e3) -> None:
+def name_above(axes: Axes, stages: Sequence[Stage], zero: float) -> None:
     """Names above the panel, spread where phases are short, with a line to the middle of each."""
     low, high = axes.get_xlim()
     shown = _lasting(stages)
-    middles = [0.5 * factor * (stage.phase.start + stage.phase.end - 2.0 * zero) for stage in shown]
+    middles = [500.0 * (stage.phase.start + stage.phase.end - 2.0 * zero) for stage in shown]
     wide, tall = style.width_mm(axes), style.height_mm(axes)
     places = spread(middles, 4.2 * (high - low) / wide)
     for stage, middle, place in zip(shown, middles, places, strict=True):

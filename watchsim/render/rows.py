@@ -89,14 +89,14 @@ def envelope(x: Array, y: Array, swings: float) -> list[tuple[Array, Array, Arra
     return bands(x, y, columns) if columns >= FEWEST else []
 
 
-def distinct(x: Array, y: Array, cells: int = COLUMNS) -> tuple[Array, Array]:
+def distinct(x: Array, y: Array) -> tuple[Array, Array]:
     """The points of a curve that need not be a function: those that stand in another dot than the one before or after them."""
-    if len(x) <= cells:
+    if len(x) <= COLUMNS:
         return x, y
     marks = []
     for values in (x, y):
         low, high = np.nanmin(values), np.nanmax(values)
-        scaled = (values - low) * (cells / (high - low)) if high > low else np.zeros(len(values))
+        scaled = (values - low) * (COLUMNS / (high - low)) if high > low else np.zeros(len(values))
         marks.append(np.where(np.isnan(scaled), -1.0, np.floor(scaled)))
     moved = (np.diff(marks[0]) != 0.0) | (np.diff(marks[1]) != 0.0)
     kept = np.concatenate(([True], moved)) | np.concatenate((moved, [True]))

@@ -313,9 +313,9 @@ def place_panels(figure: Figure, panels: NDArray[np.object_], above: float) -> N
             axes.xaxis.label.set_verticalalignment("center")
 
 
-def spare_labels(axis: Axis, length: float, angle: bool = False, most: int = 5) -> None:
+def spare_labels(axis: Axis, length: float, angle: bool = False) -> None:
     """Numbers as of `ticks`, so few that they stand apart on an x axis of that length (pt)."""
-    for bins in range(most, 0, -1):
+    for bins in range(5, 0, -1):
         ticks(axis, bins, angle)
         places = _ticks(axis)
         apart = length * (places[1] - places[0]) / float(np.ptp(axis.get_view_interval())) if len(places) > 1 else length

@@ -401,10 +401,7 @@ LINE_SPRING: Keys = {
     "between": Key(doc="two bodies, or one and the movement", form=TEXTS, required=True),
     "points": _length("one of each, from its pivot", form=POINTS, required=True),
     "stiffness": Key(
-        units.LINEAR_STIFFNESS,
-        doc="of the spring",
-        limits=_above_zero("a spring pulls back"),
-        instead_of=("leaf",),
+        units.LINEAR_STIFFNESS, doc="of the spring", limits=_above_zero("a spring pulls back"), instead_of=("leaf",)
     ),
     "length": _length("without force", absent="that at the start"),
     "tension": Key(units.FORCE, doc="at the start, instead of `length`"),

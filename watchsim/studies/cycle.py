@@ -59,15 +59,8 @@ def _marks(events: Events, parts: Parts, ends: Array) -> Array:
 
 JSON_NAMES = (
     *("found", "verdict", "message", "amplitude_deg", "amplitude_deg_error", "period_s", "period_s_error"),
-    *(
-        "rate_s_per_d",
-        "rate_s_per_d_error",
-        "beat_error_ms",
-        "beat_error_ms_error",
-        "uneven_ms",
-        "multipliers",
-        "multipliers_error",
-    ),
+    *("rate_s_per_d", "rate_s_per_d_error", "beat_error_ms", "beat_error_ms_error", "uneven_ms", "multipliers"),
+    "multipliers_error",
     *("oscillations", "amplitudes_deg", "tooth_spread_deg", "cycles", "starts", "simulated_s", "cells_s", "wall_s"),
 )
 

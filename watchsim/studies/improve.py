@@ -29,20 +29,7 @@ from watchsim.scene.errors import SceneError
 from watchsim.scene.load import changed
 from watchsim.scene.roles import nominal_frequency
 from watchsim.scene.scene import Scene
-from watchsim.studies.goals import (
-    ABOVE,
-    BELOW,
-    EQUAL,
-    KNOWN,
-    MOST,
-    YIELD,
-    Aim,
-    Better,
-    Knob,
-    arguments,
-    needs,
-    shown,
-)
+from watchsim.studies.goals import ABOVE, BELOW, EQUAL, KNOWN, MOST, YIELD, Aim, Better, Knob, arguments, needs, shown
 from watchsim.studies.point import Question, Row, function_of
 from watchsim.studies.sensitivity import change_of
 from watchsim.studies.steady import steady
