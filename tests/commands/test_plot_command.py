@@ -158,3 +158,24 @@ def test_what_no_sound_can_be_is_refused(extra, why, tmp_path: Path, capsys: pyt
     assert main(["sound", str(run), *extra]) == 2
     assert why in capsys.readouterr().err
     assert main(["sound", str(tmp_path / "nothing")]) == 2
+
+
+def test_an_anchor_without_a_lift_angle_has_phases_by_its_geometry(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The same beats as where the scene names one; a click on its wheel has none, and is told what is missing."""
+    tables = []
+    assert main(["new", "recoil_anchor", "--drawings", "-o", str(tmp_path / "anchor")]) == 0
+    scene = tmp_path / "anchor" / "scene.toml"
+    for number in range(2):
+        assert main(["run", str(scene), "--duration", "6 s", "--no-plots", "-o", str(tmp_path / f"run{number}")]) in (0, 1)
+        capsys.readouterr()
+        assert main(["plot", str(tmp_path / f"run{number}"), "--phases", "-o", str(tmp_path / f"{number}.png")]) == 0
+        said = capsys.readouterr()
+        tables.append([line for line in said.out.splitlines() if not line.endswith(".png")])
+        assert ("Lift angle: 2.4°, as check measures it" in said.err) == (number == 1)
+        text = scene.read_text(encoding="utf-8")
+        scene.write_text(text.replace('[timegrapher]\nlift_angle = "2.0°"\n', ""), encoding="utf-8")
+    assert tables[0] == tables[1] and any("recoil" in line for line in tables[0])
+    assert main(["run", str(profiles_dir() / "ratchet"), "--no-plots", "-o", str(tmp_path / "click")]) in (0, 1)
+    capsys.readouterr()
+    assert main(["plot", str(tmp_path / "click"), "--phases", "-o", str(tmp_path / "click.png")]) == 2
+    assert "Lift angle" not in capsys.readouterr().err
