@@ -1,6 +1,7 @@
 """Drawings of strangers run the right way, or a doubt says that they do not."""
 
 import json
+import math
 from pathlib import Path
 from typing import Any
 
@@ -171,3 +172,45 @@ def test_bores_for_screws_and_those_of_a_plate_are_no_pivots(tmp_path: Path) -> 
     assert found.doubts == () and [role.task for role in found.roles] == ["wheel", "oscillator", "fixed"]
     anchor = found.roles[1].part.centre
     assert anchor is not None and anchor.at == pytest.approx((0.0, 15.1665e-3), abs=1e-7)
+
+
+def test_a_rack_is_no_click_that_lacks_a_pivot(tmp_path: Path) -> None:
+    """It was said to swing through the teeth, to need a pivot, and to make the direction of its pinion doubtful."""
+    pitch, teeth = math.pi, 16
+    low, high = (6.8, 9.0), (-9.25, -7.1)
+    pinion = [
+        (low[k in (1, 2)] * math.cos(a), low[k in (1, 2)] * math.sin(a))
+        for tooth in range(teeth)
+        for k, a in enumerate(math.tau * (tooth + share) / teeth for share in (-0.32, -0.12, 0.12, 0.32))
+    ]
+    rack = [((k + 0.5 + share) * pitch, high[abs(share) < 0.2]) for k in range(-5, 6) for share in (-0.32, -0.12, 0.12, 0.32)]
+    document = ezdxf.new("R2010", units=ezdxf.units.MM)
+    space = document.modelspace()
+    for layer, points in (("PINION", pinion), ("RACK", [*rack, (19.0, -12.0), (-15.0, -12.0)])):
+        space.add_lwpolyline(points, close=True, dxfattribs={"layer": layer})
+    space.add_circle((0.0, 0.0), 1.5, dxfattribs={"layer": "PINION_BORE"})
+    document.saveas(tmp_path / "rack.dxf")
+    (doubt,) = propose([tmp_path / "rack.dxf"]).doubts
+    assert doubt.startswith("RACK: teeth in a straight row")
+
+
+@pytest.mark.parametrize(
+    ("cam", "lever", "axis"), [("Nocken", "Hebel", "Achse"), ("came", "levier", "axe"), ("CAM", "LEVER", "BORE")]
+)
+def test_a_lever_on_a_cam_follows_it(cam: str, lever: str, axis: str, tmp_path: Path) -> None:
+    """It lay a tenth of a millimetre off the cam, without a spring, and nothing touched anything."""
+    angles = [math.tau * k / 120 for k in range(120)]
+    radii = [6.0 + 2.0 * math.cos(a) + 0.5 * math.cos(2.0 * a) for a in angles]
+    outlines = {
+        cam: [(r * math.cos(a), r * math.sin(a)) for r, a in zip(radii, angles, strict=True)],
+        lever: [(-4.0, 8.6), (12.0, 8.6), (13.0, 10.0), (12.0, 11.4), (-4.0, 10.0)],
+    }
+    document = ezdxf.new("R2010", units=ezdxf.units.MM)
+    for layer, points in outlines.items():
+        document.modelspace().add_lwpolyline(points, close=True, dxfattribs={"layer": layer})
+    for layer, place, radius in ((cam, (0.0, 0.0), 1.0), (lever, (12.0, 10.0), 0.5)):
+        document.modelspace().add_circle(place, radius, dxfattribs={"layer": f"{layer} {axis}"})
+    document.saveas(tmp_path / "cam.dxf")
+    found = tried([tmp_path / "cam.dxf"])
+    assert ([role.task for role in found.roles], found.doubts) == (["driver", "click"], ())
+    assert any(guess.key == "springs.0.stiffness" for guess in found.guesses)

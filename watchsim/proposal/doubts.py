@@ -28,6 +28,7 @@ def doubts(
     `pivots` (m): the points on layers for pivots.
     """
     moving = [role for role in roles if role.moves]
+    racks = [role for role in roles if any(_is_rack(piece) for piece in role.part.pieces)]
     met = {role.name for facing in facings for role, _ in facing.sides}
     found = list(_layout(moving, facings, apart, left_out))
     if not found and len(moving) > 1:
@@ -35,13 +36,13 @@ def doubts(
         found += _chain(roles, facings)
         found += list(_heights(moving, facings)) or _cut_in(moving, facings)
         found += _overlapping(facings)
-        found += _clicks(moving)
+        found += _clicks([role for role in moving if role not in racks])
     elif not found and moving and not facings and len(roles) > 1:
         found.append(f"{moving[0].name} is all that moves, and nothing meets it: no pivot was found for the other parts")
-    found += _centres(moving)
+    found += _centres([role for role in moving if role not in racks])
     found += list(_racks(roles)) or (_hinges(moving, pivots) if found else ())
     wheel = first_of(roles, WHEEL)
-    stopped = any(role.task in (LEVER, OSCILLATOR, CLICK) for role in roles)
+    stopped = any(role.task in (LEVER, OSCILLATOR, CLICK) for role in roles if role not in racks)
     if wheel is not None and not leans and stopped and not any(role.task == DRIVER for role in roles):
         found.append(
             f"the teeth of {wheel.name} lean neither way: that it is driven clockwise is a guess. "

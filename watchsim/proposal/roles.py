@@ -240,7 +240,7 @@ def _driven(rest: Sequence[Part]) -> tuple[Part, str, str] | None:
     if len(rest) != 2:
         return None
     for one, other in (rest, rest[::-1]):
-        if _words(one) & CAMS and other.kind is None:
+        if _words(one) & CAMS and other.kind in (None, LEVER):
             return other, CLICK, "it follows the cam, as the names of the other's layers say"
         if one.kind == DRIVER and other.kind is None:
             return other, LEVER, "the names of the other's layers say that it drives"

@@ -91,7 +91,8 @@ def amounts_of(roles: Sequence[Role], size: float, swing: float, met: Sequence[F
         inertia[swinging.name] = _oscillators(inertia, swinging, lever, wheel, lift, Q_FACTOR[watch])
     driven = _driven(roles, wheel, swinging)
     clicks = any(role.task == CLICK for role in roles)
-    evenly = any(role.task == DRIVER and role.name == driven for role in roles) and (clicks or wheel is not None)
+    driver = first_of(roles, DRIVER)  # what is not known as one may as well be held by the wheel, as in a stop work
+    evenly = driver is not None and driver.name == driven and (clicks or driver.part.kind == DRIVER)
     turned = driven if evenly else None
     if swinging is None:
         torque = Amount(1e-6 if watch else 1e-4, "nothing in the drawing says how strong the drive is")
