@@ -17,17 +17,7 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / "tests"), str(ROOT / "tests" / "ordinary")]
 
-from flat_cams import (  # noqa: E402
-    ANGLES,
-    FRICTIONS,
-    RESTITUTIONS,
-    TOLERANCES,
-    bar_for,
-    beyond,
-    compared,
-    expected,
-    off,
-)
+from flat_cams import ANGLES, FRICTIONS, RESTITUTIONS, TOLERANCES, bar_for, beyond, compared, expected, off  # noqa: E402
 from gear_scenes import TEETH, contact_ratio, gear_scene, train  # noqa: E402
 from mean_speed import mean_speed  # noqa: E402
 from mechanisms import MECHANISMS, TOLERANCE, mechanism  # noqa: E402
