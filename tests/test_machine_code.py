@@ -48,8 +48,12 @@ def package(tmp_path: Path) -> Path:
 @pytest.mark.parametrize(
     ("name", "matters"),
     [
-        *(("contact/outer.py", True), ("inner.py", True), ("deep/names.py", True), ("whole.py", True)),
-        *(("__init__.py", False), ("plots.py", False)),
+        ("contact/outer.py", True),
+        ("inner.py", True),
+        ("deep/names.py", True),
+        ("whole.py", True),
+        ("__init__.py", False),
+        ("plots.py", False),
     ],
 )
 def test_digest_follows_what_kernels_reach(package: Path, name: str, matters: bool) -> None:

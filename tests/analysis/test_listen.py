@@ -59,8 +59,14 @@ def naive(recording, vph):
 @pytest.mark.parametrize(
     ("vph", "beat_error", "interval", "rate"),
     [
-        *((36000, 0.0, 5e-3, 3.0), (28800, 0.4e-3, 7e-3, -12.0), (25200, 0.3e-3, 8e-3, 4.0), (21600, 2.5e-3, 9e-3, 40.0)),
-        *((18000, 0.0, 11e-3, 0.0), (18000, 6e-3, 11e-3, -300.0), (7200, 20e-3, 14e-3, 25.0), (3600, 60e-3, 20e-3, -15.0)),
+        (36000, 0.0, 5e-3, 3.0),
+        (28800, 0.4e-3, 7e-3, -12.0),
+        (25200, 0.3e-3, 8e-3, 4.0),
+        (21600, 2.5e-3, 9e-3, 40.0),
+        (18000, 0.0, 11e-3, 0.0),
+        (18000, 6e-3, 11e-3, -300.0),
+        (7200, 20e-3, 14e-3, 25.0),
+        (3600, 60e-3, 20e-3, -15.0),
     ],
 )
 def test_watches_and_slow_clocks(vph, beat_error, interval, rate):
@@ -190,8 +196,13 @@ def test_the_command(tmp_path, capsys):
 @pytest.mark.parametrize(
     ("content", "why"),
     [
-        *((b"", "no WAV"), (b"RIFF....WAVEfmt ", "no WAV"), (b"ID3 an mp3", "no WAV"), ("silent", "is silent")),
-        *(("noise", "nothing in it repeats"), ("short", "too short"), (None, "no such file")),
+        (b"", "no WAV"),
+        (b"RIFF....WAVEfmt ", "no WAV"),
+        (b"ID3 an mp3", "no WAV"),
+        ("silent", "is silent"),
+        ("noise", "nothing in it repeats"),
+        ("short", "too short"),
+        (None, "no such file"),
     ],
 )
 def test_what_is_no_clock_is_refused(tmp_path, capsys, content, why):

@@ -163,10 +163,17 @@ def test_arcs_without_radius_are_lines(read_svg: Reader, arc: str) -> None:
 @pytest.mark.parametrize(
     ("d", "count", "word"),
     [
-        *(("L 5 5", 0, "begins with"), ("M1 1 L 5 5 6", 1, "ends"), ("M1 1 L 5 5 X 7 7", 1, '"X')),
-        *(("M1 1 L 5 5 L 7#7", 1, '"#7"'), ("M1 1 L 5 5 A 3 3 0 2 0 9 9", 1, '"2 0 9'), ("M1 1 L 5 5,,7 7", 1, '",,7')),
-        *(("M1 1 L ,5 5", 0, '",5'), ("M1 1 H 1e999", 0, "beyond"), ("M1 1 L 5 5 z 7 7", 2, "closed")),
-        *(("M1 1 L 5 5 nan 7", 1, '"n"'), ("M1 1 H 7 V", 1, "ends")),
+        ("L 5 5", 0, "begins with"),
+        ("M1 1 L 5 5 6", 1, "ends"),
+        ("M1 1 L 5 5 X 7 7", 1, '"X'),
+        ("M1 1 L 5 5 L 7#7", 1, '"#7"'),
+        ("M1 1 L 5 5 A 3 3 0 2 0 9 9", 1, '"2 0 9'),
+        ("M1 1 L 5 5,,7 7", 1, '",,7'),
+        ("M1 1 L ,5 5", 0, '",5'),
+        ("M1 1 H 1e999", 0, "beyond"),
+        ("M1 1 L 5 5 z 7 7", 2, "closed"),
+        ("M1 1 L 5 5 nan 7", 1, '"n"'),
+        ("M1 1 H 7 V", 1, "ends"),
     ],
 )
 def test_a_fault_ends_the_path_and_is_told(d: str, count: int, word: str) -> None:

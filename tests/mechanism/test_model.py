@@ -132,7 +132,11 @@ def bent(turn: float, after: Edge | None = None) -> Loop:
 @pytest.mark.parametrize(
     ("turn", "corner"),
     [
-        *((0.5e-3, True), (1.1, True), (1.1 * JOINT_RESOLUTION, True), (0.9 * JOINT_RESOLUTION, False), (-0.5e-3, False)),
+        (0.5e-3, True),
+        (1.1, True),
+        (1.1 * JOINT_RESOLUTION, True),
+        (0.9 * JOINT_RESOLUTION, False),
+        (-0.5e-3, False),
         (-1.1, False),
     ],
 )

@@ -105,8 +105,14 @@ def test_doubts_do_not_contradict_each_other_and_stand_at_the_top(tmp_path: Path
 
 
 PIVOTS = [
-    *(("Welle Rad", "Welle Anker"), ("Radbohrung", "Ankerbohrung"), ("Bohrung", "Bohrung"), ("Pivot Wheel", "Pivot Lever")),
-    *(("axe de la roue", "axe d'ancre"), ("TROU", "PERÇAGE"), ("Arbor 1", "Arbor 2"), ("foro ruota", "asse ancora")),
+    ("Welle Rad", "Welle Anker"),
+    ("Radbohrung", "Ankerbohrung"),
+    ("Bohrung", "Bohrung"),
+    ("Pivot Wheel", "Pivot Lever"),
+    ("axe de la roue", "axe d'ancre"),
+    ("TROU", "PERÇAGE"),
+    ("Arbor 1", "Arbor 2"),
+    ("foro ruota", "asse ancora"),
 ]
 
 

@@ -8,8 +8,12 @@ from watchsim.proposal.words import LEVER, OSCILLATOR, facing_by_name, part_of
 @pytest.mark.parametrize(
     ("first", "second"),
     [
-        *(("STEIGRAD_ZÄHNE", "ANKER_HEBESTEINE"), ("Zähne", "Klauen"), ("Anker Messer", "Unruh Sicherheitsrolle")),
-        *(("ANCRE_DARD", "BALANCIER_PETIT_PLATEAU"), ("dents", "levées"), ("Gabel", "Hebelstein")),
+        ("STEIGRAD_ZÄHNE", "ANKER_HEBESTEINE"),
+        ("Zähne", "Klauen"),
+        ("Anker Messer", "Unruh Sicherheitsrolle"),
+        ("ANCRE_DARD", "BALANCIER_PETIT_PLATEAU"),
+        ("dents", "levées"),
+        ("Gabel", "Hebelstein"),
     ],
 )
 def test_surfaces_that_face_each_other(first: str, second: str) -> None:

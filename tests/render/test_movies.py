@@ -234,9 +234,14 @@ def test_what_goes_far_is_followed():
 @pytest.mark.parametrize(
     ("place", "said"),
     [
-        *(("levr", "bodies with a drawing"), ("entyr pallet", 'did you mean "entry pallet"')),
-        *(("lever.NONE", "layers of lever"), ("lever.NONE.1", "layers of lever"), ("1,2:3", "two corners")),
-        *(("1,2:1,4", "empty"), ("nan,2:1,4", "empty"), ("", "bodies with a drawing")),
+        ("levr", "bodies with a drawing"),
+        ("entyr pallet", 'did you mean "entry pallet"'),
+        ("lever.NONE", "layers of lever"),
+        ("lever.NONE.1", "layers of lever"),
+        ("1,2:3", "two corners"),
+        ("1,2:1,4", "empty"),
+        ("nan,2:1,4", "empty"),
+        ("", "bodies with a drawing"),
     ],
 )
 def test_a_place_that_is_none_is_refused(place, said):
@@ -433,9 +438,13 @@ def test_silence_and_gifs_are_refused(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("speed", "words"),
     [
-        *((1.0, "true speed"), (2.0, "2 × true speed"), (1.0 / 20.0, "1/20 of true speed")),
-        *((9.0 / 10.0, "9/10 of true speed"), (0.11 * 10 / 11.0 + 0.003, "0.103 of true speed")),
-        *((11.0 / 12.0, "0.9167 of true speed"), (1e-7, "1e-07 of true speed")),
+        (1.0, "true speed"),
+        (2.0, "2 × true speed"),
+        (1.0 / 20.0, "1/20 of true speed"),
+        (9.0 / 10.0, "9/10 of true speed"),
+        (0.11 * 10 / 11.0 + 0.003, "0.103 of true speed"),
+        (11.0 / 12.0, "0.9167 of true speed"),
+        (1e-7, "1e-07 of true speed"),
     ],
 )
 def test_speeds(speed: float, words: str) -> None:

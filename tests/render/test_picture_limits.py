@@ -304,9 +304,16 @@ def test_even_frames_lie_evenly_and_are_limited():
 @pytest.mark.parametrize(
     ("speed", "text"),
     [
-        *((1.0, "true speed"), (1 / 20, "1/20 of true speed"), (0.05, "1/20 of true speed"), (2 / 3, "2/3 of true speed")),
-        *((0.123456, "0.1235 of true speed"), (1e-7, "1e-07 of true speed"), (2.0, "2 × true speed")),
-        *((1.2, "1.2 × true speed"), (1.0625, "1.062 × true speed"), (9 / 11, "9/11 of true speed")),
+        (1.0, "true speed"),
+        (1 / 20, "1/20 of true speed"),
+        (0.05, "1/20 of true speed"),
+        (2 / 3, "2/3 of true speed"),
+        (0.123456, "0.1235 of true speed"),
+        (1e-7, "1e-07 of true speed"),
+        (2.0, "2 × true speed"),
+        (1.2, "1.2 × true speed"),
+        (1.0625, "1.062 × true speed"),
+        (9 / 11, "9/11 of true speed"),
         (10 / 11, "0.9091 of true speed"),
     ],
 )
@@ -355,9 +362,13 @@ def test_poses_in_words():
 @pytest.mark.parametrize(
     ("degrees", "text"),
     [
-        *((0.0, ""), (360.0, ""), (-90.0, "picture turned by 90° clockwise")),
-        *((20.0, "picture turned by 20° counter-clockwise"), (270.0, "picture turned by 90° clockwise")),
-        *((180.0, "picture turned by 180°"), (-180.0, "picture turned by 180°")),
+        (0.0, ""),
+        (360.0, ""),
+        (-90.0, "picture turned by 90° clockwise"),
+        (20.0, "picture turned by 20° counter-clockwise"),
+        (270.0, "picture turned by 90° clockwise"),
+        (180.0, "picture turned by 180°"),
+        (-180.0, "picture turned by 180°"),
     ],
 )
 def test_a_turned_picture_says_so(degrees, text):
@@ -378,8 +389,13 @@ def test_room_for_a_slider_is_that_of_its_whole_travel():
 @pytest.mark.parametrize(
     ("speed", "text"),
     [
-        *((1.004, "true speed"), (0.996, "true speed"), (0.7, "0.7 × true speed"), (0.5, "1/2 of true speed")),
-        *((1 / 43.2, "1/43 of true speed"), (1 / 432.0, "1/430 of true speed"), (2.46, "2.5 × true speed")),
+        (1.004, "true speed"),
+        (0.996, "true speed"),
+        (0.7, "0.7 × true speed"),
+        (0.5, "1/2 of true speed"),
+        (1 / 43.2, "1/43 of true speed"),
+        (1 / 432.0, "1/430 of true speed"),
+        (2.46, "2.5 × true speed"),
     ],
 )
 def test_a_speed_that_changes_has_two_digits(speed: float, text: str) -> None:

@@ -30,9 +30,13 @@ LOCKED = "[lock.drawings]\n'drawings/wheel.dxf' = 'a'\n'drawings/lever.svg' = 'b
 @pytest.mark.parametrize(
     ("inside", "free", "forced"),
     [
-        *(((), True, True), ((PREFIX + "x",), True, True), (("notes.txt",), False, False)),
-        *((("notes.txt", PREFIX + "x"), False, False), (("summary.json", "notes.txt"), False, True)),
-        *((("trajectory.npz",), False, True), (("events.csv",), False, False)),
+        ((), True, True),
+        ((PREFIX + "x",), True, True),
+        (("notes.txt",), False, False),
+        (("notes.txt", PREFIX + "x"), False, False),
+        (("summary.json", "notes.txt"), False, True),
+        (("trajectory.npz",), False, True),
+        (("events.csv",), False, False),
     ],
 )
 def test_only_empty_folders_and_with_force_those_of_results(

@@ -170,9 +170,16 @@ DESIGN = Design("made", "Made", Values, lambda _: {}, lambda _: "", conflicts)
 @pytest.mark.parametrize(
     ("name", "text", "number"),
     [
-        *(("lock", "1.7°", 1.7), ("lock", "0.02 rad", math.degrees(0.02)), ("length", "123.456 mm", 123.456)),
-        *(("length", "0.3 m", 300.0), ("length", "3 inch", 76.2), ("length", "12345.678 µm", 12.345678), ("teeth", 17, 17.0)),
-        *(("teeth", "17", 17.0), ("beat", "21600 vph", 21600.0), ("beat", "3 Hz", 21600.0)),
+        ("lock", "1.7°", 1.7),
+        ("lock", "0.02 rad", math.degrees(0.02)),
+        ("length", "123.456 mm", 123.456),
+        ("length", "0.3 m", 300.0),
+        ("length", "3 inch", 76.2),
+        ("length", "12345.678 µm", 12.345678),
+        ("teeth", 17, 17.0),
+        ("teeth", "17", 17.0),
+        ("beat", "21600 vph", 21600.0),
+        ("beat", "3 Hz", 21600.0),
     ],
 )
 def test_a_text_in_any_unit_is_a_number_in_the_dimension_s_own(name: str, text: object, number: float) -> None:

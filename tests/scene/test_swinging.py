@@ -179,8 +179,12 @@ def test_partners_and_the_way_of_the_drive() -> None:
     assert (partners(scene, "b"), partners(scene, "a"), partners(scene, "x")) == ({"a", "c"}, {"b"}, set())
     table = Torque("c", table=((0.0, -1.0), (1.0, 2.5)))
     for torques, way in (
-        *(((), 1.0), ((Torque("a", -2.0),), -1.0), ((Torque("a", 2.0), Torque("c", 1.0)), -1.0)),
-        *(((Torque("a", 2.0), table), -1.0), ((Torque("a", 2.5), table), 1.0), ((Torque("b", -9.0), Torque("a", 2.5)), 1.0)),
+        ((), 1.0),
+        ((Torque("a", -2.0),), -1.0),
+        ((Torque("a", 2.0), Torque("c", 1.0)), -1.0),
+        ((Torque("a", 2.0), table), -1.0),
+        ((Torque("a", 2.5), table), 1.0),
+        ((Torque("b", -9.0), Torque("a", 2.5)), 1.0),
     ):
         assert drive_direction(replace(scene, torques=torques), "a") == way
     assert drive_direction(replace(scene, torques=(Torque("a", 2.0),)), "c") == -1.0

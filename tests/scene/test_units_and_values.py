@@ -416,8 +416,14 @@ def test_a_path_to_nothing_is_refused_with_what_is_near(key: str, words: str) ->
 @pytest.mark.parametrize(
     ("value", "dimension", "expected"),
     [
-        *((3, ANGLE, "3.0 rad"), (-0.125, TORQUE, "-0.125 N·m"), (3, NUMBER, 3), (0.5, None, 0.5), (True, ANGLE, True)),
-        *(("3 mm", ANGLE, "3 mm"), ([1, (0.5, "x")], ANGLE, ["1.0 rad", ["0.5 rad", "x"]]), (None, NUMBER, None)),
+        (3, ANGLE, "3.0 rad"),
+        (-0.125, TORQUE, "-0.125 N·m"),
+        (3, NUMBER, 3),
+        (0.5, None, 0.5),
+        (True, ANGLE, True),
+        ("3 mm", ANGLE, "3 mm"),
+        ([1, (0.5, "x")], ANGLE, ["1.0 rad", ["0.5 rad", "x"]]),
+        (None, NUMBER, None),
     ],
 )
 def test_numbers_get_the_unit_of_their_key(value: object, dimension: Any, expected: object) -> None:

@@ -81,9 +81,12 @@ def start_on(outline: Loop, slope: float, before: float) -> tuple[float, float]:
 @pytest.mark.parametrize(
     ("slope", "radius", "cuts", "v0", "friction"),
     [
-        *((0.5, 5e-3, 1, 0.3, 0.0), (0.5, 5e-3, 20, 0.3, 0.0), (-0.3, 5e-3, 1, 0.24, 0.0)),
+        (0.5, 5e-3, 1, 0.3, 0.0),
+        (0.5, 5e-3, 20, 0.3, 0.0),
+        (-0.3, 5e-3, 1, 0.24, 0.0),
         *(pytest.param(-0.3, 5e-3, 100, 0.24, 0.0, marks=pytest.mark.slow), (0.5, 5e-3, 10, 0.3, 1.5)),
-        *((-0.3, 5e-3, 10, 0.22, 1.5), (0.5, 1.001e-3, 10, 0.3, 0.0)),
+        (-0.3, 5e-3, 10, 0.22, 1.5),
+        (0.5, 1.001e-3, 10, 0.3, 0.0),
     ],
     ids=["valley", "valley-20", "crest", "crest-100", "rolling-valley", "rolling-crest", "nearly-equal-radii"],
 )

@@ -130,8 +130,12 @@ def star(rng: np.random.Generator, corners: int, size: float, x: float = 0.0) ->
 def shapes(rng: np.random.Generator) -> list[tuple[Loop, ...]]:
     """A few corners, many, arcs, a ring around a hole, two rings, a small disc."""
     return [
-        *((star(rng, 7, 2 * MM),), (star(rng, 90, 3 * MM),), (circle(1.5 * MM),), (circle(2 * MM), HOLE)),
-        *((star(rng, 12, 1 * MM, -2 * MM), star(rng, 12, 1 * MM, 2 * MM)), (circle(0.3 * MM),)),
+        (star(rng, 7, 2 * MM),),
+        (star(rng, 90, 3 * MM),),
+        (circle(1.5 * MM),),
+        (circle(2 * MM), HOLE),
+        (star(rng, 12, 1 * MM, -2 * MM), star(rng, 12, 1 * MM, 2 * MM)),
+        (circle(0.3 * MM),),
     ]
 
 

@@ -99,8 +99,12 @@ def test_lengths_and_speeds_go_with_the_size_of_the_scene() -> None:
 @pytest.mark.parametrize(
     ("tolerance", "behind", "speed", "phase"),
     [
-        *((1e-13, 2e-8, 1e-8, 0.1 * 1e-4**0.2), (4e-10, 2e-8, 1e-8, 0.1 * 0.4**0.2), (6e-10, 2e-8, 1.2e-8, 0.1 * 0.6**0.2)),
-        *((2e-9, 4e-8, 4e-8, 0.1), (1e-7, 2e-6, 2e-7, 0.1), (2e-6, 2e-5, 2e-7, 0.1)),
+        (1e-13, 2e-8, 1e-8, 0.1 * 1e-4**0.2),
+        (4e-10, 2e-8, 1e-8, 0.1 * 0.4**0.2),
+        (6e-10, 2e-8, 1.2e-8, 0.1 * 0.6**0.2),
+        (2e-9, 4e-8, 4e-8, 0.1),
+        (1e-7, 2e-6, 2e-7, 0.1),
+        (2e-6, 2e-5, 2e-7, 0.1),
     ],
 )
 def test_what_lies_behind_and_what_is_slow_goes_with_the_tolerance_within_limits(

@@ -205,7 +205,11 @@ def test_rare_failures_in_a_corner_of_uniform_dimensions(short):
 @pytest.mark.parametrize(
     ("name", "size_mm", "low", "high"),
     [
-        *(("h6", 2.0, -6, 0), ("g6", 5.0, -12, -4), ("H7", 8.0, 0, 15), ("js5", 12.0, -4, 4), ("m6", 2.0, 2, 8)),
+        ("h6", 2.0, -6, 0),
+        ("g6", 5.0, -12, -4),
+        ("H7", 8.0, 0, 15),
+        ("js5", 12.0, -4, 4),
+        ("m6", 2.0, 2, 8),
         ("F8", 20.0, 20, 53),
     ],
 )
