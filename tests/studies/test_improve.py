@@ -200,6 +200,24 @@ def test_designs_that_do_not_tick_turn_the_search_back_and_what_knocks_later_is_
 
 
 @pytest.mark.slow
+def test_a_geometry_with_which_the_watch_does_not_go_is_no_result():
+    """Nearer to its wheel the anchor has more lock, until both jam: what was found was written as the better scene."""
+    scene = ws.designs.graham().scene()
+    key = "bodies.pendulum.position.1"
+    found = ws.improve(scene, {key: ("27.9 mm", "28.4 mm")}, goal="lock = 1.3°")
+    assert not found.found and "has that geometry, but the watch" in found.message and "--keep" in found.message
+    kept = ws.improve(scene, {key: ("28.1 mm", "28.4 mm")}, goal="lock = 1.1°")
+    assert kept.found and ws.steady(kept.scene).verdict == "ticks"
+
+
+def test_the_old_place_is_that_of_the_scene(tmp_path):
+    """A place that stands in no file, as that of a pivot in a drawing, was shown as the middle of its limits."""
+    faults = []
+    (wheel,) = knobs_from(scene_of(tmp_path, DECAY), {"bodies.wheel.position.0": ("-1 mm", "3 mm")}, faults)
+    assert not faults
+    assert (wheel.value, wheel.unit) == (0.0, "mm")
+
+
 def test_a_search_by_evolution_ends_in_the_optimum(tmp_path):
     vary = {"bodies.wheel.inertia": ("1 g·mm²", "9 g·mm²"), "springs.0.stiffness": ("2 µN·m/rad", "4 µN·m/rad")}
     scene = scene_of(tmp_path, DECAY)

@@ -207,9 +207,9 @@ def filmed(run: Trajectory, slow: float) -> tuple[tuple[float, float], float]:
     """
     from watchsim.render.opening import last_beats
     from watchsim.render.view import recorded
-    from watchsim.scene.roles import keeps_time
+    from watchsim.scene.roles import keeps_time, only_presses
 
-    if keeps_time(run.scene):
+    if keeps_time(run.scene) and not only_presses(run.scene):
         return last_beats(run, 1.1), slow
     start, end = recorded(run)[-1]
     return (start, end), (end - start) / WHOLE_RUN

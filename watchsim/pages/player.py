@@ -49,7 +49,7 @@ from watchsim.render.view import (
     view,
     zigzags,
 )
-from watchsim.scene.roles import frequency, keeps_time, roles
+from watchsim.scene.roles import frequency, keeps_time, only_presses, roles
 from watchsim.scene.scene import Body, Scene
 from watchsim.scene.trains import carried_last, is_still
 from watchsim.simulation.state import EventKind
@@ -367,7 +367,7 @@ def shown(run: Trajectory, window: Sequence[float] | None) -> Window:
     if window is not None:
         return stretch(run, window)
     start, end = recorded(run)[-1]
-    hertz = frequency(run.scene) if keeps_time(run.scene) else None
+    hertz = frequency(run.scene) if keeps_time(run.scene) and not only_presses(run.scene) else None
     beats = 0.5 * BEATS / hertz if hertz else 0.0
     if 0.0 < beats < WHOLE * (end - start):
         start = end - beats

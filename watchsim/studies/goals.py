@@ -15,6 +15,7 @@ from watchsim.scene.assign import full_key
 from watchsim.scene.errors import Fault, SceneError
 from watchsim.scene.keys import DESIGN, nearest, words_of
 from watchsim.scene.read_settings import FUNCTION
+from watchsim.scene.read_tolerances import nominal_at
 from watchsim.scene.scene import Scene
 from watchsim.studies.axes import dimension_of
 from watchsim.studies.point import OUTPUTS, Output
@@ -97,6 +98,9 @@ def knobs_from(
 def _knob(scene: Scene, key: str, pair: tuple[Any, Any] | None, faults: list[Fault], place: str) -> Knob | None:
     before, dimension = len(faults), dimension_of(scene, key)
     held = value_at(scene, key)
+    written, implied = held, nominal_at(scene, key)
+    if held is None and isinstance(implied, float):  # a place that the drawing has: it is the value of old
+        held = f"{implied!r} {dimension.si}" if dimension is not None else None
     quantity = None if held is None or dimension is None else quantity_at(scene, key, held)
     if dimension is None or (held is None and pair is None):
         faults.append(Fault(key, _advice(scene, key), place=place))
@@ -110,7 +114,7 @@ def _knob(scene: Scene, key: str, pair: tuple[Any, Any] | None, faults: list[Fau
     except (UnitError, TypeError) as error:
         faults.append(Fault(key, str(error), f" = {pair[0]}:{pair[1]}" if pair else "", place=place))
         return None
-    unit = unit_of(held if held is not None else pair[0] if pair else "", dimension)
+    unit = unit_of(written if written is not None else pair[0] if pair else 0.0, dimension)
     if pair is not None:
         low, high = sorted((low, high))  # a torque that drives clockwise is read as -0.4 to -1.6
     if pair is not None and not low < high:

@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 from watchsim.analysis.verdict_kinds import SPOKEN, Verdict
 from watchsim.scene.errors import SceneError
 from watchsim.scene.load import changed
-from watchsim.scene.roles import nominal_frequency
+from watchsim.scene.roles import keeps_time, nominal_frequency
 from watchsim.scene.scene import Scene
 from watchsim.studies.goals import ABOVE, BELOW, EQUAL, KNOWN, MOST, YIELD, Aim, Better, Knob, arguments, needs, shown
 from watchsim.studies.point import Question, Row, function_of
@@ -535,15 +535,27 @@ class Search:
         return f"no design between these limits keeps all of them. The nearest ({values}): {words}"
 
     def _later(self, point: Array) -> str:
-        """What becomes of a design after the run by which it was judged: its fault on the limit cycle; "" where it works."""
-        if self.question.by_shooting or Verdict(self.rows[point.tobytes()].get("verdict")).name is None:
-            return ""
-        cycle = steady(changed(self.question.scene, self._changes(point)), tolerance=self.question.tolerance)
-        if Verdict(cycle.verdict).works:
+        """What becomes of a design after the run, or the geometry, by which it was judged: its fault on the limit cycle.
+
+        "" where it works, or where the scene it comes from does not either.
+        """
+        still = not self.motion and keeps_time(self.question.scene)
+        if not still and (self.question.by_shooting or Verdict(self.rows[point.tobytes()].get("verdict")).name is None):
             return ""
         values = ", ".join(f"{one.key} = {one.shown(x)}" for one, x in zip(self.knobs, self.at(point), strict=True))
-        end, fault = f"{self.question.duration:g} s", SPOKEN.get(str(cycle.verdict), cycle.verdict)
-        found = f"the design found ({values}) works for {end}, but not for good: as it settles it {fault}"
+        try:
+            cycle = steady(changed(self.question.scene, self._changes(point)), tolerance=self.question.tolerance)
+            if Verdict(cycle.verdict).works or (still and not Verdict(steady(self.original).verdict).works):
+                return ""
+            fault = SPOKEN.get(str(cycle.verdict), cycle.verdict)
+        except SceneError as error:
+            fault = f"cannot start: {error.faults[0].message.splitlines()[0].removesuffix('.')}"
+        if still:
+            found = f"the design found ({values}) has that geometry, but the watch {fault}"
+            return f'{found}. With --keep "amplitude >= 100°", say, designs that do not tick are taken as worse'
+        found = (
+            f"the design found ({values}) works for {self.question.duration:g} s, but not for good: as it settles it {fault}"
+        )
         return f"{found}. Judge by a longer run, or by limit cycles (without a duration)"
 
     def _why(self, point: Array) -> str:
