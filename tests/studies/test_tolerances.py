@@ -58,6 +58,11 @@ def test_the_study_says_what_json_promises(whole):
     assert numbers["yield"] == numbers["good"] / 48
     assert numbers["yield_low"] <= numbers["yield"] <= numbers["yield_high"]
     assert sum(numbers["failures"].values()) == 48 - numbers["good"]
+    for column, one in whole.outputs.items():
+        assert all(value == 0.0 or abs(value) > 1e-9 for value in (one.mean, one.sigma))  # no rounding is judged
+        if one.nominal is not None:  # a beat error is a magnitude: its worst case was that of the signed one
+            assert one.linear_low <= one.nominal <= one.linear_high
+            assert column != "beat_error_ms" or one.linear_low >= 0.0
     spread = numbers["outputs"]["amplitude_deg"]
     assert {"mean", "sigma", "quantiles", "cp", "cpk"} <= set(spread)
     assert {one["key"] for one in numbers["contributions"]["amplitude_deg"]} == {

@@ -41,6 +41,7 @@ from watchsim.studies.yields import (
 from watchsim.units import known_unit, rounded
 
 SHOWN = 20  # of the worst samples
+ROUNDING = 1e-9  # of a degree, a millisecond: what is less was to be 0
 LEAST_KNOWN = 32  # samples with an output, for what contributes to it
 QUANTILES = (0.00135, 0.05, 0.5, 0.95, 0.99865)
 
@@ -204,8 +205,9 @@ class Samples:
         return sequence_of(self.numbers)
 
     def column(self, name: str) -> Floats:
-        """Values, nan where there is none."""
-        return np.array([row.get(name) if row.get(name) is not None else np.nan for row in self.rows], float)
+        """Values, nan where there is none; 0 for rounding, as the draw of dead-beat pallets is."""
+        values = np.array([row.get(name) if row.get(name) is not None else np.nan for row in self.rows], float)
+        return np.where(np.abs(values) < ROUNDING, 0.0, values)
 
 
 class Linear:
@@ -323,6 +325,9 @@ def _with_linear(found: Spread, space: Space, linear: Linear, column: str) -> Sp
     sigma = float(np.sqrt(cover.sum()))
     level = linear.nominal[column]
     low, high = (level + float(np.sort(parts[:, :2], axis=1)[:, i].sum()) for i in (0, 1))
+    level, sigma, low, high = (0.0 if abs(one) < ROUNDING else one for one in (level, sigma, low, high))
+    if column in SMOOTH:  # shown as a magnitude
+        low, high = 0.0 if low < 0.0 < high else min(abs(low), abs(high)), max(abs(low), abs(high))
     words = []
     if column not in SMOOTH and found.sigma > 0.0:
         if not 0.9 < sigma / found.sigma < 1.1:
