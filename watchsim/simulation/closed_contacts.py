@@ -373,7 +373,7 @@ def kinetic_energy(model, u):
 @kernel
 def is_explained(model, options, before, after, highest):
     """True if a change of kinetic energy from `before` to `after` (J, impulses taken out) is of the size of rounding."""
-    allowed = max(EXPLAINED_SHARE, options.tolerance) * before + EXPLAINED_OF_HIGHEST * highest
+    allowed = EXPLAINED_SHARE * before + EXPLAINED_OF_HIGHEST * highest
     change = abs(after - before)
     if change <= allowed:
         return True
