@@ -135,6 +135,15 @@ def test_text_of_a_watch_that_jams():
     )
 
 
+def test_where_a_spring_only_presses_it_is_said_where_all_are_at_the_end():
+    """A finger moved as the scene says, a star, and its jumper: nothing keeps time."""
+    run = ws.simulate(ws.load(ws.profiles_dir() / "jumper"), 0.3)
+    text, bodies = summary_text(run), summary(run)["bodies"]
+    for name in ("finger", "star", "jumper"):
+        angle = f"{round(math.degrees(bodies[name]['angle_rad']), 3) + 0.0:.3f}".replace("-", "−")
+        assert f"  {name:13}at {angle}° at the end" in text
+
+
 def test_text_of_other_things():
     text = summary_text(disc_run())
     assert "frequency" not in text and "disc         at (10065.6528, 50.0000) mm, −11534.388° at the end" in text

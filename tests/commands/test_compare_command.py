@@ -54,6 +54,16 @@ def test_a_value_in_another_unit_is_no_change_and_a_dimension_of_the_design_come
     assert "bodies.pendulum.drawing" in changed
 
 
+def test_a_row_is_in_one_unit_that_which_was_typed(tmp_path, capsys):
+    """What a scene does not say is completed in SI units."""
+    words = ["run", INCLINE, "-o", str(tmp_path / "a"), "--no-plots", "--duration", "0.1 s"]
+    main([*words, "--set", "bodies.disc.position.0=0.00125 m"])
+    main([*words[:2], "-o", str(tmp_path / "b"), *words[4:], "--set", "bodies.disc.position.0=2.5 mm"])
+    capsys.readouterr()
+    assert main(["compare", str(tmp_path / "a"), str(tmp_path / "b")]) == 0
+    assert re.search(r"bodies\.disc\.position\.0 +1\.25 mm +2\.5 mm\n", capsys.readouterr().out.replace(" \n", "\n"))
+
+
 def test_what_changes_no_motion_is_named_only_where_every_scene_says_it():
     """The profile has [expect] and no [tolerances]."""
     scene = ws.load(GRAHAM)

@@ -314,6 +314,31 @@ def test_dead_beat_anchor_drops_as_drawn_and_drives_nothing_back(name):
         assert abs(math.degrees(one.recoil.value)) < CLOSE
 
 
+@pytest.mark.parametrize("height", few([28.0, 28.1], 2))
+def test_the_shake_of_a_wheel_goes_on_below_zero_where_it_jams(height):
+    """As the anchor comes nearer to the wheel: turned to where polygons of the other teeth and the pallets just part."""
+    scene = drawn("dead-beat")[0].set("bodies.pendulum.position.1", f"{height} mm")
+    function = measure(scene)
+    entry, unlocked = function.pallets[0], function.passages[0].unlocked
+    turned = affinity.rotate(outline(scene, "pendulum", "PALLETS", 1.0), math.degrees(unlocked.lever), origin=(0, 0))
+    pallets = affinity.translate(turned, *scene.body("pendulum").position)
+    own = shapely.Point(unlocked.x, unlocked.y).buffer(2e-3)
+
+    def free(back: float) -> bool:
+        angle = math.degrees(unlocked.wheel) + back
+        teeth = affinity.rotate(outline(scene, "wheel", "TEETH", 1.0), angle, origin=(0, 0))
+        return teeth.difference(own).disjoint(pallets)
+
+    low, high = -0.5, 1.0  # the wheel turns clockwise
+    assert free(low) and not free(high)
+    for _ in range(25):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if free(middle) else (low, middle)
+    assert degrees(entry.shake) == pytest.approx(low, abs=1e-3)
+    jams = [one for one in judgements(scene, function) if one.code == "shake"]
+    assert len(jams) == (low <= 0.0) and all("the entry pallet is unlocked" in one.message for one in jams)
+
+
 @pytest.mark.parametrize("name", few(["recoil", "little recoil"], 1))
 def test_recoil_is_what_polygons_say(name):
     scene, values = drawn(name)

@@ -263,6 +263,11 @@ def test_a_page_of_what_is_no_watch() -> None:
     assert ">Timing</h2>" not in text and data_of(text)["view"]["follow"]["body"] == 0
 
 
+def test_a_page_has_no_empty_timing_where_a_spring_only_presses() -> None:
+    run = simulate(load(profiles_dir() / "jumper"), 0.02)
+    assert ">Timing</h2>" not in page_text(run)
+
+
 def test_a_page_needs_its_ending_and_is_written_whole(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match=r"ends in \.html"):
         report(watch_run(), tmp_path / "watch.pdf")

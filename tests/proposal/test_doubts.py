@@ -264,6 +264,18 @@ def test_a_french_detent_is_known_by_its_stone_its_leaf_and_its_finger(stone: st
     assert found.doubts == ()
 
 
+@pytest.mark.parametrize(("spokes", "touches"), [("ROUE_RAYONS", False), ("ESCAPE_WHEEL_SPOKES", False), ("ROUE_BORD", True)])
+def test_spokes_of_a_wheel_are_no_teeth(spokes: str, touches: bool, tmp_path: Path) -> None:
+    names = {"wheel_TEETH": "ROUE_DENTS", "pendulum_PALLETS": "ANCRE_LEVEES", "pendulum_ANCHOR": "ANCRE_BRAS"}
+    path = renamed(assembly(scene_of("graham"), tmp_path / "a.dxf", "body"), names)
+    document = ezdxf.readfile(path)
+    document.modelspace().add_circle((0.0, 0.0), 13.0, dxfattribs={"layer": spokes})
+    document.saveas(path)
+    found = [{side.split(".")[1] for side in pair} for pair in propose([path]).contacts]
+    assert {"ROUE_DENTS", "ANCRE_LEVEES"} in found
+    assert ({spokes, "ANCRE_LEVEES"} in found) == touches
+
+
 @pytest.mark.parametrize("turned", [0.0, -8.0, 5.0])
 def test_a_pin_drawn_over_the_fork_meets_it_all_the_same_and_it_is_said(turned: float, tmp_path: Path) -> None:
     """The lever drawn off the middle, by some degrees, and the balance at rest: its pin then lies over a horn of the fork."""

@@ -18,7 +18,7 @@ from watchsim.analysis.timing import Beats
 from watchsim.analysis.verdict_kinds import BESIDE
 from watchsim.mechanism.compile import scene_size
 from watchsim.scene.keys import in_words
-from watchsim.scene.roles import keeps_time
+from watchsim.scene.roles import keeps_time, only_presses
 from watchsim.simulation import MOREAU
 from watchsim.simulation.trajectory import Trajectory
 from watchsim.units import decimals_for, metric, signed, true_minus
@@ -244,7 +244,7 @@ def _places(run: Trajectory, numbers: Mapping[str, Any]) -> Iterator[tuple[str, 
         if state is None or body.motion == "fixed":
             continue
         if body.motion == "pivot":
-            if not keeps_time(run.scene):
+            if not keeps_time(run.scene) or only_presses(run.scene):
                 yield body.name, f"at {signed(math.degrees(state['angle_rad']), 3)}° at the end"
             continue
         angle = f", {signed(math.degrees(state['angle_rad']), 3)}°" if body.motion == "free" else ""

@@ -213,6 +213,7 @@ class Hands:
 
 REACH = 1.2  # pitches: so far the wheel is let run
 NEIGHBOURS = 0.75  # of a pitch to both sides: what is looked at while a tooth rests
+AHEAD = 0.5  # of a pitch: further than a tooth that jams reaches into the other stone
 
 
 @dataclass(frozen=True, slots=True)
@@ -295,10 +296,16 @@ class Wheel:
         return None if touch is None else self._described(lever, touch, led)
 
     def room(self, rest: Rest) -> float:
-        """How far the resting wheel can be turned back until another place touches, rad."""
-        q = self.at(rest.lever, rest.wheel)
-        touch = self.hands.touch(self.parts.wheel, self.parts.to_wheel, q, -self.parts.way, self.pitch)
-        return self.pitch if touch is None else abs(touch.angle - rest.wheel)
+        """How far the resting wheel can be turned back until another place touches, rad; negative where a tooth stands in
+        another stone already, which it would have to go on to be free of: the wheel jams."""
+        q, wheel, way = self.at(rest.lever, rest.wheel), self.parts.wheel, self.parts.way
+        others = np.setdiff1d(self.parts.to_wheel, self._around(rest.tooth, 0.5))
+        met = self.hands.touch(wheel, others, q, way, AHEAD * self.pitch)  # what comes out ahead of it is in there now
+        ahead = AHEAD * self.pitch if met is None else way * (met.angle - rest.wheel)
+        touch = self.hands.touch(wheel, others, q, -way, 0.0, ahead) or self.hands.touch(
+            wheel, self.parts.to_wheel, q, -way, self.pitch
+        )
+        return self.pitch if touch is None else way * (rest.wheel - touch.angle)
 
     def lead(self, start: Rest, end: float) -> Sweep:
         """Lead the lever from a rest to `end` (rad)."""
@@ -311,7 +318,7 @@ class Wheel:
             room = self.room(here)
             rooms.append(room)
             ids = self._around(here.tooth)
-            last, after = self._stretch(here, end, led, ids, 0.5 * room)
+            last, after = self._stretch(here, end, led, ids, 0.5 * (room if room > 0.0 else AHEAD * self.pitch))
             stretches.append(Stretch(here, last))
             if last.lever == end:
                 return Sweep(tuple(stretches), tuple(let_offs), tuple(rooms))
@@ -366,8 +373,8 @@ class Wheel:
         """Where a primitive of the wheel stands in its own frame, rad."""
         return self._polar[tooth]
 
-    def _around(self, tooth: int) -> Integers:
-        """The contacts with the wheel's primitives around this one."""
+    def _around(self, tooth: int, pitches: float = NEIGHBOURS) -> Integers:
+        """The contacts with the wheel's primitives around this one, to both sides."""
         if not hasattr(self, "_places"):
             contacts = self.hands.model.contacts
             ids = self.parts.to_wheel
@@ -376,4 +383,4 @@ class Wheel:
             a, b = polar[contacts.a[ids]], polar[contacts.b[ids]]
             self._places = np.where(np.isnan(a), b, a)
         off = (self._places - self._polar[tooth] + math.pi) % math.tau - math.pi
-        return np.ascontiguousarray(self.parts.to_wheel[np.abs(off) <= NEIGHBOURS * self.pitch])
+        return np.ascontiguousarray(self.parts.to_wheel[np.abs(off) <= pitches * self.pitch])

@@ -60,6 +60,7 @@ def judgements(scene: Scene, function: Function) -> tuple[Judgement, ...]:
         for name, one, pivot in zip(NAMES, function.pallets, held, strict=True):
             found += _pallet(f"{name} {function.parts.pallet}", one, (friction, pivot), function.parts.detached)
         found += _drops(function.pallets, function.parts.pallet)
+        found += _jams(function.pallets, function.parts)
     if function.fork is not None:
         found += _fork(scene, function.fork)
     found += _freedoms(function)
@@ -142,6 +143,16 @@ def _drops(pallets: tuple[Pallet, Pallet], word: str) -> Iterator[Judgement]:
         message = f"the drops differ: {inside:.2f}° inside, {outside:.2f}° outside"
         fix = f"Move the {word}s together where the inside drop is the larger, apart where the outside drop is."
         yield Judgement("unequal-drops", "notice", abs(inside - outside), UNEQUAL_DROP, message, fix, "equal drops", PLAYTNER)
+
+
+def _jams(pallets: tuple[Pallet, Pallet], parts: Parts) -> Iterator[Judgement]:
+    for name, other, one in zip(NAMES, NAMES[::-1], pallets, strict=True):
+        shake = _least(one.shake)
+        if shake <= 0.0:
+            where = f"where the {name} {parts.pallet} is unlocked"
+            message = f"the wheel jams {where}: a tooth stands in the {other} one by {-shake:.3f}° of the wheel"
+            fix = f"Narrow the teeth or the {parts.pallet}s."
+            yield Judgement("shake", "warning", shake, 0.0, message, fix, "shake of the wheel above 0°", PLAYTNER)
 
 
 def _fork(scene: Scene, made: Fork) -> Iterator[Judgement]:

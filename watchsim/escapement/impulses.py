@@ -232,7 +232,7 @@ class Pallet:
     lift         from unlocked to let off; lift_stone with the tooth's corner on the stone's face, lift_tooth with the stone's
                  corner on the tooth's face; nan where another stone than this one takes the impulse
     drop         of the wheel: free way from leaving this stone to the lock on the other one
-    shake        of the wheel: how far it can be turned back as the stone is about to be unlocked
+    shake        of the wheel: how far it can be turned back as the stone is about to be unlocked; negative where it jams
     """
 
     total_lock: Quantity

@@ -182,7 +182,7 @@ def _mean(values: Array) -> str:
 
 
 def timekeeping(run: Trajectory, numbers: Mapping[str, Any]) -> Iterator[Markup]:
-    """The section; nothing where nothing swings."""
+    """The section; nothing where nothing swings, or there is nothing to say of it."""
     cards = [_card(*reading) for reading in readings(numbers)]
     if not cards and not swings(run.scene):
         return
@@ -192,14 +192,14 @@ def timekeeping(run: Trajectory, numbers: Mapping[str, Any]) -> Iterator[Markup]
         words = f"Means over {start:.4g} s to {end:.4g} s. Scatter: how much the beats of that time scatter and drift"
         note = element("p", f"{words}{_computed(numbers)}.", class_="note")
     message = numbers.get("timing_message")
-    yield section(
-        "timing",
-        "Timing",
+    parts = (
         element("dl", *cards, class_="cards") if cards else None,
         element("p", message, class_="note") if message else None,
         note,
         *_charts(run, beats(run)),
     )
+    if any(parts):
+        yield section("timing", "Timing", *parts)
 
 
 def _computed(numbers: Mapping[str, Any]) -> str:

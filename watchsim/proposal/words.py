@@ -41,6 +41,8 @@ PARTS = {word: kind for kind, text in _PARTS.items() for word in _words(text)}
 FEATURES = {word: kind for kind, text in _FEATURES.items() for word in _words(text)}
 ESCAPING = _words("escape scape échappement scappamento")
 TEETH = _words("teeth tooth wheel gear pinion ratchet star zahn zaehne zähne rad steigrad dents roue étoile denti ruota stella")
+SPOKES = _words("spoke spokes hub speiche speichen nabe rayon rayons moyeu razza razze raggi mozzo")  # of wheels: no teeth
+WHEELS = frozenset(word for word, kind in PARTS.items() if kind == WHEEL)
 STONES = _words(
     "pallet pallets stone stones teeth stein steine paletten hebestein hebesteine klaue klauen palette palettes levée"
 )
@@ -116,6 +118,6 @@ def facing_by_name(first: str, second: str, tasks: frozenset[str] = frozenset())
 
     `tasks` of their bodies. None where the names do not say so.
     """
-    a, b = set(tokens(first)), set(tokens(second))
+    a, b = (words - WHEELS if words & SPOKES else words for words in (set(tokens(first)), set(tokens(second))))
     fitting = ((one, other, most) for one, other, task, most in FACING if task is None or task in tasks)
     return max((most for one, other, most in fitting if (a & one and b & other) or (a & other and b & one)), default=None)

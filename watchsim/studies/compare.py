@@ -18,13 +18,13 @@ from watchsim.results.folder import TRAJECTORY, lock_text, read_results, read_su
 from watchsim.scene.assign import dimension_of
 from watchsim.scene.keys import DESIGN
 from watchsim.scene.load import load
-from watchsim.scene.roles import is_driven, keeps_time
+from watchsim.scene.roles import is_driven, keeps_time, only_presses
 from watchsim.scene.scene import Scene
 from watchsim.scene.toml import digest, parsed
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.trajectory import Trajectory
 from watchsim.studies.steady import steady
-from watchsim.units import UnitError, parse, split, true_minus
+from watchsim.units import UnitError, known_unit, parse, show, split, true_minus
 
 SAME = 1e-12  # of a value: what writing it in another unit may change
 TIMED = {"amplitude_deg": "°", "rate_s_per_d": "s/d", "beat_error_ms": "ms", "period_s": "s"}
@@ -159,7 +159,7 @@ def _of_run(run: Trajectory, name: str, numbers: dict[str, Any] | None) -> Side:
         energy = known["energy"]
         powers = {"power_in_W": energy_shares(run).supplied, **{f"{one}_W": energy["dissipated"].get(one) for one in SHARES}}
         outputs |= {key: (value / run.simulated, None) for key, value in powers.items() if value is not None}
-    if not keeps_time(run.scene):
+    if not keeps_time(run.scene) or only_presses(run.scene):
         outputs |= {key: (value, None) for key, value in _places(run.scene, known["bodies"])}
     return Side(name, run.scene, outputs, known["verdict"], known["verdict_message"] or known["stop_message"], run)
 
@@ -251,8 +251,21 @@ DIGITS, LONGEST = 6, 40  # of a number whose error is not known; letters of a va
 
 
 def changed_rows(found: Comparison) -> list[list[str]]:
-    """Key and its value on every side, to read."""
-    return [[key, *map(_value, values)] for key, values in found.changed.items()]
+    """Key and its value on every side, to read; the sides in one unit."""
+    return [[key, *map(_value, _alike(values))] for key, values in found.changed.items()]
+
+
+def _alike(values: Sequence[Any]) -> Sequence[Any]:
+    """Quantities of several units in the first that is not of the SI, in which scenes are completed; else as they are."""
+    try:
+        units = [known_unit(split(value)[1]) for value in values]
+        written = next(split(value)[1] for value, unit in zip(values, units, strict=True) if unit.factor != 1.0)
+        if len(set(units)) == 1 or len({unit.powers for unit in units}) > 1:
+            return values
+        numbers = (float(split(value)[0]) * unit.factor for value, unit in zip(values, units, strict=True))
+        return [show(number, written, 12) for number in numbers]
+    except (UnitError, StopIteration):
+        return values
 
 
 def result_rows(found: Comparison, finest: float = 0.0) -> list[list[str]]:
