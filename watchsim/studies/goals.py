@@ -98,8 +98,9 @@ def knobs_from(
 def _knob(scene: Scene, key: str, pair: tuple[Any, Any] | None, faults: list[Fault], place: str) -> Knob | None:
     before, dimension = len(faults), dimension_of(scene, key)
     held = value_at(scene, key)
-    written, implied = held, nominal_at(scene, key)
-    if held is None and isinstance(implied, float):  # a place that the drawing has: it is the value of old
+    written, owner = held, words_of(key)[:2]
+    implied = nominal_at(scene, key) if owner[0] == "bodies" and owner[-1] in scene.source.get("bodies", {}) else None
+    if held is None and isinstance(implied, float):  # a place that the drawing has
         held = f"{implied!r} {dimension.si}" if dimension is not None else None
     quantity = None if held is None or dimension is None else quantity_at(scene, key, held)
     if dimension is None or (held is None and pair is None):
