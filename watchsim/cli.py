@@ -71,8 +71,30 @@ def meant(word: str, known: Iterable[str]) -> str:
 # solver gave up; 4 a fault of the program itself; 130, 143 stopped by Ctrl-C, SIGTERM.
 
 COMMANDS = (
-    *("demo", "new", "inspect", "check", "run", "plot", "movie", "report", "card", "live", "sound", "listen", "steady"),
-    *("compare", "sweep", "positions", "shock", "tolerance", "merge", "improve", "fit", "verify", "bench", "export"),
+    "demo",
+    "new",
+    "inspect",
+    "check",
+    "run",
+    "plot",
+    "movie",
+    "report",
+    "card",
+    "live",
+    "sound",
+    "listen",
+    "steady",
+    "compare",
+    "sweep",
+    "positions",
+    "shock",
+    "tolerance",
+    "merge",
+    "improve",
+    "fit",
+    "verify",
+    "bench",
+    "export",
     "schema",
 )
 

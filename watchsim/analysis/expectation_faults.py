@@ -20,7 +20,13 @@ if TYPE_CHECKING:
 COUNTS = ("cells", "cells_asked", "declared_pairs", "sweeps")
 LOOKED = ("worst_m", "resolution_m", "allowed_m", "looks", "t_s", "x_mm", "y_mm")
 TIMED = (
-    *("amplitude_deg", "amplitude_deg_error", "period_s", "rate_s_per_d", "beat_error_ms", "frequency_hz", "vph"),
+    "amplitude_deg",
+    "amplitude_deg_error",
+    "period_s",
+    "rate_s_per_d",
+    "beat_error_ms",
+    "frequency_hz",
+    "vph",
     "timegrapher",
 )
 BY_WHEEL = ("missed_beats", "efficiency")

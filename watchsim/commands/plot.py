@@ -101,7 +101,7 @@ def _with_lift(run: Trajectory) -> Trajectory:
     """Phases need the lift angle of an anchor; where the scene names none, what its geometry says, which is said."""
     from math import degrees
 
-    from watchsim.escapement.lift_angle import with_measured_lift
+    from watchsim.escapement.measure import with_measured_lift
 
     found = with_measured_lift(run)
     if found is not run:

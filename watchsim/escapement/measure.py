@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,9 +14,10 @@ from watchsim.escapement.fork_and_pin import Balance, Direct, Entry, Fork, NotMe
 from watchsim.escapement.impulses import Impulse, Pallet, Roller, impulse, least_arm, pallet
 from watchsim.escapement.turning import LEVEL
 from watchsim.mechanism.compile import Compiled, compile_scene
-from watchsim.scene.roles import hinged_pallets, oscillators, pitch
+from watchsim.scene.roles import hinged_pallets, oscillators, partners, pitch, roles
 from watchsim.scene.scene import Scene
 from watchsim.scene.trains import ungeared
+from watchsim.simulation.trajectory import Trajectory
 
 MOST = 0.75  # of a pitch: the wheel goes on by less in one beat; two teeth of a lever make a whole one
 
@@ -315,3 +316,31 @@ def _balance(
 
 def finite(value: float) -> bool:
     return bool(np.isfinite(value))
+
+
+# Which lift angle has an anchor whose scene names none?
+#
+# Whether a body that touches the wheel itself is an anchor or a click on its spring, no contact says; the geometry of function
+# does: two pallets that lock or drive, and let go. What it measures serves as lift angle for the phases of a run.
+
+
+def measured_lift(scene: Scene) -> float | None:
+    """The way (rad) from where one pallet lets go of a tooth to where the other does; None where no anchor does so.
+
+    Nor where the scene names a lift angle.
+    """
+    found = roles(scene)
+    if scene.lift_angle is not None or found.wheel is None or found.oscillator is None or found.lever is not None:
+        return None
+    if found.oscillator not in partners(scene, found.wheel):
+        return None
+    function = measure(scene, few=1, fork_too=False)
+    if function.pallets is None or function.swung is None:
+        return None
+    return 0.5 * (function.swung[0] - function.swung[1])  # it was led half as far again as from let-off to let-off
+
+
+def with_measured_lift(run: Trajectory) -> Trajectory:
+    """The run as of a scene that names the measured lift angle, so that its beats have phases; the same where there is none."""
+    lift = measured_lift(run.scene)
+    return run if lift is None else replace(run, scene=replace(run.scene, lift_angle=lift))
