@@ -37,9 +37,10 @@ from watchsim.analysis.summary import summary
 from watchsim.analysis.timing import beats
 from watchsim.analysis.verdict import overbanking, unsettled, verdict
 from watchsim.analysis.verdict_kinds import Verdict
-from watchsim.analysis.watch import Teeth, arms, at_lever, face, in_force, teeth, unlocked, watch_of
+from watchsim.analysis.watch import arms, at_lever, face, in_force, unlocked, watch_of
 from watchsim.paths import profiles_dir
 from watchsim.scene.forces import Damping, Spring, Torque
+from watchsim.scene.lean import Teeth, teeth
 from watchsim.scene.load import load
 from watchsim.scene.roles import pitch, roles
 from watchsim.scene.scene import Body, Scene

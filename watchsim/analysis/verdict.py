@@ -38,6 +38,7 @@ from watchsim.analysis.verdict_kinds import (
     when,
 )
 from watchsim.analysis.watch import Arms, Face, Watch, arms, arms_at, at_lever, face, in_force, unlocked, watch_of
+from watchsim.escapement.measure import wrong_way
 from watchsim.scene.roles import is_driven, keeps_time, swings, timekeeper
 from watchsim.simulation.knock_tally import ANGLE, CONTACT, FIRST, LAST, PLACE, TOGETHER
 from watchsim.simulation.state import EventKind
@@ -152,22 +153,20 @@ def _against_drive(watch: Watch) -> Verdict | None:
 
 
 def _against_teeth(watch: Watch) -> Verdict | None:
-    if watch.teeth is None or watch.teeth.direction * watch.direction >= 0.0:
-        return None
-    free, found = running_free(watch), unlocked(watch)
-    if free is not None:
-        (t, how), pair = free, None
-    elif found:
-        t, pair, _ = found[0]
-        how = f"they do not lock but push {watch.lever} off its banking ({pair})"
+    leans = 0.0 if watch.teeth is None else watch.teeth.direction * watch.direction
+    free, found = (running_free(watch), unlocked(watch)) if leans < 0.0 else (None, [])
+    t, pair = found[0][:2] if found and free is None else (0.0 if free is None else free[0], None)
+    drive = torque_text(watch.drive(t))
+    if free is not None or found:
+        how = f"they do not lock but push {watch.lever} off its banking ({pair})" if free is None else free[1]
+        why = f"its drive of {drive} turns {watch.wheel} against the lean of its teeth; {how}. Change the sign of the torque"
+    elif (said := wrong_way(watch.run.scene)) is not None:
+        why = said
     else:
         return None
-    drive = watch.drive(t)
-    words = (
-        f"{when(t)}  the watch runs backwards: its drive of {torque_text(drive)} turns {watch.wheel} against the lean of its "
-        f"teeth; {how}. Change the sign of the torque"
+    return Verdict(
+        BACKWARDS, f"{when(t)}  the watch runs backwards: {why}", t, watch.wheel, pair, watch.drive(t), len(found) or None
     )
-    return Verdict(BACKWARDS, words, t, watch.wheel, pair, drive, len(found) or None)
 
 
 def overbanking(watch: Watch) -> Verdict | None:

@@ -54,7 +54,7 @@ def run(args: argparse.Namespace) -> int:
     from watchsim.commands.inputs import load_scene, secured_file
     from watchsim.drawing.findings import Finding
     from watchsim.escapement.function_report import draw_left, judgements, statics, text
-    from watchsim.escapement.measure import measure
+    from watchsim.escapement.measure import measure, wrong_way
     from watchsim.mechanism.check import check_report, check_text, modelled_pairs
     from watchsim.mechanism.compile import compile_scene
     from watchsim.simulation.start import refusals
@@ -78,6 +78,8 @@ def run(args: argparse.Namespace) -> int:
     function = measure(scene, compiled)
     report["statics"] = statics(function)
     report["findings"] += [judgement.as_dict() for judgement in judgements(scene, function)]
+    if (why := wrong_way(scene)) is not None:
+        report["findings"].append(Finding("wrong-way", "warning", why, "").as_dict())
     wrong = any(finding["severity"] == "error" for finding in report["findings"])
     turned, passes = None, True
     if args.turn and not wrong:

@@ -8,16 +8,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from watchsim.analysis.watch import Teeth, teeth
 from watchsim.escapement.by_hand import SLACK, Hands, LetOff, Parts, Rest, Stretch, Sweep, Wheel, parts_of
 from watchsim.escapement.fork_and_pin import Balance, Direct, Entry, Fork, NotMeasured, Passage, Safety, fork, safety
 from watchsim.escapement.impulses import Impulse, Pallet, Roller, impulse, least_arm, pallet
 from watchsim.escapement.turning import LEVEL
 from watchsim.mechanism.compile import Compiled, compile_scene
-from watchsim.scene.roles import hinged_pallets, oscillators, partners, pitch, roles
+from watchsim.scene.lean import Teeth, teeth
+from watchsim.scene.roles import drive_direction, hinged_pallets, oscillators, partners, pitch, roles
 from watchsim.scene.scene import Scene
+from watchsim.scene.teeth import train
 from watchsim.scene.trains import ungeared
 from watchsim.simulation.trajectory import Trajectory
+from watchsim.units import signed
 
 MOST = 0.75  # of a pitch: the wheel goes on by less in one beat; two teeth of a lever make a whole one
 
@@ -344,3 +346,51 @@ def with_measured_lift(run: Trajectory) -> Trajectory:
     """The run as of a scene that names the measured lift angle, so that its beats have phases; the same where there is none."""
     lift = measured_lift(run.scene)
     return run if lift is None else replace(run, scene=replace(run.scene, lift_angle=lift))
+
+
+# Is the wheel driven the way in which its teeth lock? Driven the other way some anchors and pin levers tick all the same, with
+# a swing far too small. The lean of the teeth does not tell: pins and their wheels have none, and a cylinder's teeth lean back.
+
+LOCKED = math.radians(1e-3)  # what locks by less, or is drawn in by less, does not
+
+
+def wrong_way(scene: Scene) -> str | None:
+    """A sentence where the teeth do not lock as the wheel is driven, and would lock on both sides if driven the other way.
+
+    Nothing is said of teeth that lean the way they are driven.
+    """
+    wheel = roles(scene).wheel
+    leans = None if wheel is None else teeth(scene, wheel)
+    if wheel is None or leans is None or leans.direction * drive_direction(scene, wheel) > 0.0:
+        return None
+    if _locks(here := measure(scene, few=1, fork_too=False)):
+        return None
+    driving = train(scene, wheel)
+    turned = tuple(
+        replace(one, value=-one.value, table=tuple((at, -value) for at, value in one.table)) if one.body in driving else one
+        for one in scene.torques
+    )
+    there = measure(replace(scene, torques=turned), few=1, fork_too=False)
+    if not _locks(there) or there.pallets is None or there.parts is None:
+        return None
+    seen = "nothing locks"
+    if here.pallets is not None:
+        what = "lock" if any(one.lock.value <= LOCKED for one in here.pallets) else "draw"
+        seen = f"{what} {_both(here.pallets, what)}"
+    way = "clockwise" if drive_direction(scene, wheel) < 0.0 else "counter-clockwise"
+    return (
+        f"{wheel} is driven {way}, and so its teeth do not lock on the {there.parts.pallet}s ({seen}); driven the other way they "
+        f"lock by {_both(there.pallets, 'lock')}. Change the sign of the torque"
+    )
+
+
+def _both(pallets: Sequence[Pallet], what: str) -> str:
+    return " and ".join(f"{signed(math.degrees(getattr(one, what).value), 3)}°" for one in pallets)
+
+
+def _locks(function: Function) -> bool:
+    """Do both pallets lock, and, on banks, draw the lever in?"""
+    if function.pallets is None or function.parts is None:
+        return False
+    held = (one.lock.value > LOCKED and (not function.parts.detached or one.draw.value > LOCKED) for one in function.pallets)
+    return all(held)

@@ -17,7 +17,8 @@ import numpy as np
 
 from watchsim.analysis.timing import DAY
 from watchsim.analysis.verdict import blows_that_turn
-from watchsim.analysis.verdict_kinds import TICKS, UNSETTLED
+from watchsim.analysis.verdict_kinds import BACKWARDS, TICKS, UNSETTLED
+from watchsim.escapement.measure import wrong_way
 from watchsim.scene.errors import Faults, SceneError
 from watchsim.scene.roles import is_driven, only_presses, roles
 from watchsim.scene.scene import Scene
@@ -261,8 +262,8 @@ def _cycle(loop: Loop, parts: Parts, exact: Polished) -> Cycle:
     means = exact.means
     return Cycle(
         found=True,
-        verdict=TICKS if parts.wheel >= 0 else None,
-        message=_blows(loop, parts, exact.turn.events),
+        verdict=_ticks(loop, parts),
+        message=_blows(loop, parts, exact.turn.events) or wrong_way(loop.scene) or "",
         amplitude_deg=_degrees(loop, parts, means.amplitude),
         amplitude_deg_error=_degrees(loop, parts, exact.amplitude_error),
         period_s=means.period,
@@ -277,6 +278,11 @@ def _cycle(loop: Loop, parts: Parts, exact: Polished) -> Cycle:
         oscillations=exact.per,
         tooth_spread_deg=_degrees(loop, parts, means.spread),
     )
+
+
+def _ticks(loop: Loop, parts: Parts) -> str | None:
+    """The verdict on a cycle: it is none of a watch whose teeth lock only when they are driven the other way."""
+    return None if parts.wheel < 0 else BACKWARDS if wrong_way(loop.scene) else TICKS
 
 
 def _blows(loop: Loop, parts: Parts, events: Events) -> str:
@@ -354,7 +360,7 @@ def _by_run(
         loop.simulated += sum(other.simulated for other in others)
     return Cycle(
         found=settled,
-        verdict=(TICKS if parts.wheel >= 0 else None) if settled else UNSETTLED,
+        verdict=_ticks(loop, parts) if settled else UNSETTLED,
         message=message if settled else f"{message}, which has not settled",
         amplitude_deg=means.amplitude_deg,
         amplitude_deg_error=means.amplitude_deg_error,

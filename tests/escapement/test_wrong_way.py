@@ -1,0 +1,47 @@
+"""Is a wheel that is driven the way in which its teeth do not lock reported, and no other?"""
+
+import json
+from dataclasses import replace
+
+import pytest
+
+import watchsim as ws
+from watchsim.cli import main
+from watchsim.construction import registry
+from watchsim.escapement.measure import wrong_way
+from watchsim.paths import profiles_dir
+from watchsim.scene.load import from_mapping, load
+from watchsim.scene.scene import Scene
+
+PROFILES = sorted(path.parent.name for path in profiles_dir().glob("*/scene.toml"))
+TICKING_EITHER_WAY = ("graham", "recoil_anchor", "pin_pallet", "swiss_lever")
+
+
+def reversed_drive(scene: Scene) -> Scene:
+    turned = (replace(one, value=-one.value, table=tuple((at, -value) for at, value in one.table)) for one in scene.torques)
+    return replace(scene, torques=tuple(turned))
+
+
+def test_no_profile_and_no_design_is_said_to_be_driven_the_wrong_way():
+    scenes = {name: load(profiles_dir() / name) for name in PROFILES}
+    scenes |= {f"design {name}": from_mapping({"design": {"of": name}}, None) for name in registry.names()}
+    assert {name: wrong_way(scene) for name, scene in scenes.items() if wrong_way(scene)} == {}
+
+
+@pytest.mark.parametrize("name", TICKING_EITHER_WAY)
+def test_a_reversed_drive_is_a_verdict(name):
+    scene = reversed_drive(load(profiles_dir() / name))
+    assert "Change the sign of the torque" in (wrong_way(scene) or "")
+    found = ws.verdict(ws.simulate(scene, 12.0))
+    assert found.name == "backwards" and not found.works and "Change the sign of the torque" in found.message
+
+
+@pytest.mark.parametrize("name", ("graham", "pin_pallet"))
+def test_check_and_steady_say_it_of_a_scene_file(tmp_path, capsys, name):
+    torque = load(profiles_dir() / name).torques[0].value
+    options = [str(profiles_dir() / name), "--set", f"torques.0.value={-torque} N·m", "--json"]
+    assert main(["check", *options]) == 0
+    findings = json.loads(capsys.readouterr().out)["findings"]
+    assert [one["severity"] for one in findings if one["code"] == "wrong-way"] == ["warning"]
+    main(["steady", *options])
+    assert json.loads(capsys.readouterr().out)["verdict"] == "backwards"
