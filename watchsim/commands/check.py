@@ -53,8 +53,8 @@ def run(args: argparse.Namespace) -> int:
     _check_options(args)
     from watchsim.commands.inputs import load_scene, secured_file
     from watchsim.drawing.findings import Finding
-    from watchsim.escapement.function_report import draw_left, judgements, statics, text
-    from watchsim.escapement.measure import measure, wrong_way
+    from watchsim.escapement.function_report import draw_left, findings, statics, text
+    from watchsim.escapement.measure import measure
     from watchsim.mechanism.check import check_report, check_text, modelled_pairs
     from watchsim.mechanism.compile import compile_scene
     from watchsim.simulation.start import refusals
@@ -77,9 +77,7 @@ def run(args: argparse.Namespace) -> int:
         report["findings"].append(Finding("overlap", "error", words, "", x_mm=x, y_mm=y).as_dict())
     function = measure(scene, compiled)
     report["statics"] = statics(function)
-    report["findings"] += [judgement.as_dict() for judgement in judgements(scene, function)]
-    if (why := wrong_way(scene)) is not None:
-        report["findings"].append(Finding("wrong-way", "warning", why, "").as_dict())
+    report["findings"] += findings(scene, function)
     wrong = any(finding["severity"] == "error" for finding in report["findings"])
     turned, passes = None, True
     if args.turn and not wrong:

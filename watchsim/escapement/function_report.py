@@ -11,7 +11,7 @@ from watchsim.drawing.findings import Finding
 from watchsim.escapement.by_hand import Parts
 from watchsim.escapement.fork_and_pin import Fork, Quantity, Safety
 from watchsim.escapement.impulses import Impulse, Pallet
-from watchsim.escapement.measure import Function
+from watchsim.escapement.measure import Function, wrong_way
 from watchsim.scene.scene import Scene
 from watchsim.units import signed
 
@@ -50,6 +50,13 @@ class Judgement:
         plain = Finding(self.code, self.severity, self.message, self.fix).as_dict()
         value = self.value if math.isfinite(self.value) else None
         return {**plain, "value_deg": value, "limit_deg": self.limit, "rule": self.rule, "source": self.source}
+
+
+def findings(scene: Scene, function: Function) -> list[dict[str, object]]:
+    """All that is to be said of the geometry of function: a wheel driven the wrong way, and the rules that are not kept."""
+    why = wrong_way(scene)
+    backwards = [] if why is None else [Finding("wrong-way", "warning", why, "").as_dict()]
+    return backwards + [judgement.as_dict() for judgement in judgements(scene, function)]
 
 
 def judgements(scene: Scene, function: Function) -> tuple[Judgement, ...]:

@@ -379,8 +379,8 @@ def wrong_way(scene: Scene) -> str | None:
         seen = f"{what} {_both(here.pallets, what)}"
     way = "clockwise" if drive_direction(scene, wheel) < 0.0 else "counter-clockwise"
     return (
-        f"{wheel} is driven {way}, and so its teeth do not lock on the {there.parts.pallet}s ({seen}); driven the other way they "
-        f"lock by {_both(there.pallets, 'lock')}. Change the sign of the torque"
+        f"{wheel} is driven {way}, and so its teeth do not lock on the {there.parts.pallet}s ({seen}); driven the other way "
+        f"they lock by {_both(there.pallets, 'lock')}. Change the sign of the torque"
     )
 
 
