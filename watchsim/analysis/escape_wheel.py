@@ -17,6 +17,7 @@ from watchsim.scene.roles import (
     may_lock,
     only_presses,
     oscillators,
+    partners,
     pitch,
     roles,
     timekeeper,
@@ -56,6 +57,18 @@ def never_touched(run: Trajectory) -> str | None:
         return None
     kind = timekeeper(run.scene)
     return f"no amplitude and rate of a {kind}: {parts.wheel} never touched anything, and {parts.oscillator} swings by itself"
+
+
+def not_held(run: Trajectory) -> str | None:
+    """A sentence where a body that its spring should press on another one swings through its rest position instead.
+
+    Its swing is no beat: a rate is that of an oscillator that an escapement lets beat, or that swings by itself.
+    """
+    if not only_presses(run.scene) or not sums_of(run)["passages"]:
+        return None
+    own = roles(run.scene).oscillator or ""
+    others = " and ".join(sorted(partners(run.scene, own))) or "nothing"
+    return f"{own}, which its spring presses on {others}, is not held there and swings to and fro: look at where it stands"
 
 
 def _missing(run: Trajectory, found: Beats, start: float) -> str:

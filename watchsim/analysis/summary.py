@@ -10,7 +10,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from watchsim.analysis.escape_wheel import missed_beats, never_touched, standstill, why_no_timing
+from watchsim.analysis.escape_wheel import missed_beats, never_touched, not_held, standstill, why_no_timing
 from watchsim.analysis.expectations import judged
 from watchsim.analysis.flows import efficiency
 from watchsim.analysis.headlines import beats_csv, doubts, headlines, phases_csv
@@ -172,7 +172,7 @@ def _timing(run: Trajectory) -> dict[str, Any]:
     found = beats(run)
     window = last_window(run, found.nominal_period)
     stands, judged = standstill(run, found), verdict(run, found)
-    idle = _keeps_nothing_going(run, judged.message)
+    idle = _keeps_nothing_going(run, judged)
     values = _timing_of(None if idle else averages(found, window))
     return {
         **values,
@@ -188,9 +188,11 @@ def _timing(run: Trajectory) -> dict[str, Any]:
     }
 
 
-def _keeps_nothing_going(run: Trajectory, judged: str | None) -> str | None:
+def _keeps_nothing_going(run: Trajectory, found: Verdict) -> str | None:
     """Why amplitude and rate are not those of a watch: nothing touched, or the wheel runs through; None where it may be one."""
-    parts, idle = roles(run.scene), never_touched(run)
+    parts, idle, judged = roles(run.scene), never_touched(run), found.message
+    if idle is None and found.name is None and (why := not_held(run)) is not None:
+        return f"no amplitude and rate: {why}"
     if idle is None and judged and RUNS_THROUGH in judged:
         kind = timekeeper(run.scene)
         why = f"nothing locks {parts.wheel}, and {parts.oscillator} swings by itself"

@@ -17,13 +17,13 @@ from watchsim.contact.cell_frames import named_rows
 from watchsim.contact.cells import PairCells
 from watchsim.drawing.findings import Finding
 from watchsim.drawing.material import layer_roles
-from watchsim.geometry.loops import extents
+from watchsim.geometry.loops import extents, points_along
 from watchsim.geometry.solids import section
 from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.mechanism.contacts import PairCount, pair_lines, pairs_entry
 from watchsim.mechanism.overlap import cure_of, overlaps
 from watchsim.mechanism.words import force_lines, law_words, length, place, turned
-from watchsim.scene.roles import frequency, keeps_time, loads, oscillators, partners, pitch, roles
+from watchsim.scene.roles import frequency, keeps_time, loads, only_presses, oscillators, partners, pitch, reach_of, roles
 from watchsim.scene.scene import Body, Scene, Tolerance
 from watchsim.scene.solids import HAIRSPRING, LYING, PLATE, UPRIGHT, Solid, total
 from watchsim.scene.teeth import train
@@ -82,6 +82,7 @@ def _named(compiled: Compiled, pair: Any, body: int, names: Sequence[str]) -> st
 #
 # None of it is wrong by itself; all of it is easily overlooked. `watchsim check` lists it, `watchsim run` says it first.
 
+SHARES = np.linspace(0.0, 1.0, 33)  # of each edge
 ROUNDING = 1e-9  # relative: of an inertia that is written in decimals
 UNCOUNTED = 0.5  # of the area that counts: with so much more drawn beside it, the mass is hardly where it is said to be
 
@@ -97,6 +98,7 @@ def notes(scene: Scene) -> tuple[Finding, ...]:
         *_unused_lift(scene),
         *_at_rest(scene),
         *_apart(scene),
+        *_pressed_on_nothing(scene),
     )
 
 
@@ -136,6 +138,26 @@ def _apart(scene: Scene) -> Iterator[Finding]:
             one, other = (_named(compiled, pair, body, [body.name for body in scene.bodies]) for body in (pair.a, pair.b))
             message = f"{one} and {other} never come within reach of each other, at whatever angles: their contact does nothing"
             yield Finding("apart", "warning", message, "Look at their places with --png, or leave the contact out.")
+
+
+def _pressed_on_nothing(scene: Scene) -> Iterator[Finding]:
+    """A spring that should press a body on what turns relaxes before the body comes within reach of it."""
+    name = roles(scene).oscillator if only_presses(scene) else None
+    rest = next((one.rest for one in scene.springs if one.body == name and one.stop is None), None)
+    if name is None or rest is None or scene.body(name).motion != "pivot" or scene.body(name).on is not None:
+        return
+    body, others = scene.body(name), [scene.body(one) for one in sorted(partners(scene, name))]
+    if any(other.motion != "pivot" or other.on is not None for other in others) or not (others and body.loops):
+        return
+    points = np.concatenate([points_along(edge, SHARES) for loop in body.loops for edge in loop.edges])
+    turned = complex(*body.position) + points * np.exp(1j * rest)
+    for other in others:
+        reach = max((reach_of([loop]) for loop in other.loops), default=0.0)
+        if np.abs(turned - complex(*other.position)).min() < reach * (1.0 + ROUNDING):
+            return
+    names = " and ".join(other.name for other in others)
+    message = f"the spring of {name} presses it on nothing: at its rest it is out of reach of {names}"
+    yield Finding("unpressed", "warning", message, f"Look at the place of {name} with --png, and at rest under [[springs]].")
 
 
 def _weightless(scene: Scene) -> Iterator[Finding]:

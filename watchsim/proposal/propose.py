@@ -108,7 +108,7 @@ def scene_text(plan: Plan) -> str:
     if plan.amounts.lift is not None:
         lift = plan.amounts.lift
         lines += ["", "[timegrapher]"]
-        lines += [plan.guess("timegrapher.lift_angle", _text(f"{math.degrees(lift.value):.3g}°"), lift.why)]
+        lines += [plan.guess("timegrapher.lift_angle", _text(f"{math.degrees(lift.value):.4g}°"), lift.why)]
     lines += ["", "[run]", plan.guess("run.duration", _text(DURATION), "long enough to see whether it works")]
     return "\n".join(lines) + "\n"
 

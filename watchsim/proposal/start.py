@@ -129,6 +129,7 @@ def amounts_of(roles: Sequence[Role], size: float, swing: float, met: Sequence[F
 
 FULL_LIFT = math.radians(40.0)  # of a balance that the wheel drives itself: cylinder 40°, duplex and detent more
 USUAL_LIFT = math.radians(4.0)  # of an anchor
+HALVINGS = 30  # of a step of LIFTS
 LIFTS = np.radians(np.arange(0.0, 20.0, 0.05)).tolist()
 
 
@@ -154,11 +155,22 @@ def _releases(swinging: Role, wheel: Role) -> tuple[float, float] | None:
     for pallet in (points[side > 0.0], points[side < 0.0]):
         inward = pallet[np.hypot(*(pallet - axis).T) < 1.5 * teeth.outer]
         drawn = len(inward) > 0 and _is_clear(inward, axis, 0.0, teeth.outer)
-        ways = (way for angle in LIFTS for way in (angle, -angle) if _is_clear(inward, axis, way, teeth.outer) != drawn)
-        released.append(next(ways, None) if len(inward) else None)
+        reach = teeth.outer  # of the tips
+        ways = (way for angle in LIFTS for way in (angle, -angle) if _is_clear(inward, axis, way, reach) != drawn)
+        way = next(ways, None) if len(inward) else None
+        released.append(None if way is None else _crossing(inward, axis, reach, way))
     if released[0] is None or released[1] is None or not 0.0 < abs(released[0] - released[1]) < 0.5:
         return None
     return released[0], released[1]
+
+
+def _crossing(points: Floats, wheel: Floats, outer: float, beyond: float) -> float:
+    """The angle (rad), within a step of `LIFTS` before that one, at which points come clear of the tips, or into them."""
+    within, there = beyond - math.copysign(min(LIFTS[1], abs(beyond)), beyond), _is_clear(points, wheel, beyond, outer)
+    for _ in range(HALVINGS):
+        middle = 0.5 * (within + beyond)
+        within, beyond = (within, middle) if _is_clear(points, wheel, middle, outer) == there else (middle, beyond)
+    return beyond
 
 
 def _is_clear(points: Floats, wheel: Floats, angle: float, outer: float) -> bool:

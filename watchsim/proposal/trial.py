@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from watchsim.analysis.escape_wheel import not_held
 from watchsim.analysis.summary import summary
 from watchsim.analysis.verdict import verdict
 from watchsim.escapement.measure import measure
@@ -37,6 +38,10 @@ BY_TRIAL = "tried both ways, it works this way only"
 ALIKE = "it works either way"
 BY_FUNCTION = "only this way do its teeth lock and drive, as check --turn measures them"
 EITHER_WAY = "its teeth lock and drive either way, as check --turn measures them; it is driven the way that their tips lean"
+TOGETHER = (
+    "the drawings were taken to share one coordinate system: where each part is drawn about a zero of its own, give its place "
+    "with position"
+)
 JAMS = "jams between two teeth"
 MENDED = "other inertias or another torque may mend what the trial shows"
 CHORD, HELD = 1e-4, 1e-3  # of an outline, of the wheel: its chords, and how near to them something is held
@@ -44,12 +49,18 @@ NEAR = 1.25  # times the swing that a scene starts with: a jam within that is in
 
 
 def tried(paths: Sequence[Path]) -> Proposal:
+    """What drawings suggest, and what of it cannot be true, or does not work. NothingToPropose as for `propose`."""
+    found = _tried(paths)
+    together = len(paths) > 1 and found.meets and found.doubts
+    return found.doubting([TOGETHER]) if together else found
+
+
+def _tried(paths: Sequence[Path]) -> Proposal:
     """What drawings suggest, with what a run of it shows among the doubts.
 
     Where nothing says which way the wheel turns, or it does not work the way that its teeth lean, as those of a cylinder
     escapement, whose tips trail, it turns the way in which its function can be measured, where both are the way of the lean,
-    else the way in which it works: a trial has guessed inertias and torques, a measurement has none. NothingToPropose as for
-    `propose`.
+    else the way in which it works: a trial has guessed inertias and torques, a measurement has none.
     """
     found = propose(paths)
     if not found.meets:
@@ -187,7 +198,9 @@ def _wrong(run: Trajectory, found: Mapping[str, Any], proposal: Proposal) -> Ite
     if run.stop is not None and Stop(run.stop).gave_up:
         yield f"{tried} it ends: {run.stop_message}"
         return
-    if swings(run.scene) and found["amplitude_deg"] is None and found["timing_message"]:
+    if (why := not_held(run)) is not None:
+        yield f"{tried} {why}"
+    elif swings(run.scene) and found["amplitude_deg"] is None and found["timing_message"]:
         yield f"{tried} it keeps no time: {found['timing_message']}"
     if not (run.events["contact"] >= 0).any() and len(run.scene.bodies) > 1:
         yield f"{tried} nothing touches anything: no part drives another one"
