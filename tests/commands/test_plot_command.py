@@ -167,6 +167,9 @@ def test_an_anchor_without_a_lift_angle_has_phases_by_its_geometry(tmp_path: Pat
     scene = tmp_path / "anchor" / "scene.toml"
     for number in range(2):
         assert main(["run", str(scene), "--duration", "6 s", "--no-plots", "-o", str(tmp_path / f"run{number}")]) in (0, 1)
+        assert ("Lift angle: 2.4°, as check measures it" in capsys.readouterr().err) == (number == 1)
+        assert main(["report", str(tmp_path / f"run{number}")]) == 0
+        assert "is not known: say so by" not in (tmp_path / f"run{number}" / "report.html").read_text(encoding="utf-8")
         capsys.readouterr()
         assert main(["plot", str(tmp_path / f"run{number}"), "--phases", "-o", str(tmp_path / f"{number}.png")]) == 0
         said = capsys.readouterr()

@@ -142,3 +142,12 @@ def test_a_folder_that_exists_is_left_alone(tmp_path):
         mine.write(tmp_path / "lever")
     mine.write(tmp_path / "lever", force=True)
     assert (tmp_path / "lever" / "note.txt").read_text() == "mine"
+
+
+def test_a_dimension_that_makes_another_one_impossible_is_refused_with_how_far_it_may_go():
+    """The default of the guard's freedom is in the way of wide pins: what was given is to change."""
+    with pytest.raises(SceneError, match=r"design.pallet_pin.*\n.*works up to 0\.371 mm"):
+        designs.pin_pallet(pallet_pin="0.5 mm")
+    assert designs.pin_pallet(pallet_pin="0.371 mm").scene()
+    with pytest.raises(SceneError):
+        designs.pin_pallet(pallet_pin="0.373 mm")

@@ -36,6 +36,15 @@ def test_a_reversed_drive_is_a_verdict(name):
     assert found.name == "backwards" and not found.works and "Change the sign of the torque" in found.message
 
 
+@pytest.mark.parametrize("teeth", (12, 17, 18))
+def test_teeth_for_pins_that_lock_either_way_drop_far_where_they_are_driven_the_wrong_way(teeth):
+    """With 18 teeth they lean against the way in which they work."""
+    scene = from_mapping({"design": {"of": "pin_pallet", "teeth": teeth}}, None)
+    said = wrong_way(reversed_drive(scene)) or ""
+    assert wrong_way(scene) is None and "driven the other way" in said
+    assert ("drop far between the pins" in said) == (teeth > 15)
+
+
 @pytest.mark.parametrize("name", ("graham", "pin_pallet"))
 def test_check_and_steady_say_it_of_a_scene_file(tmp_path, capsys, name):
     torque = load(profiles_dir() / name).torques[0].value

@@ -3,6 +3,7 @@
 import json
 import math
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,9 +16,10 @@ from proposal.assemblies import assembly, mirror, scene_of
 from shapely import affinity
 
 from watchsim.cli import main
+from watchsim.escapement.measure import measured_lift
 from watchsim.proposal.propose import propose
 from watchsim.proposal.trial import tried
-from watchsim.scene.load import load
+from watchsim.scene.load import from_mapping, load
 
 Corners = list[tuple[float, float]]
 
@@ -99,13 +101,14 @@ def test_a_wheel_and_its_mirror_image_are_driven_opposite_ways(tmp_path: Path) -
 
 @pytest.mark.parametrize("name", ["graham", "recoil_anchor"])
 def test_an_anchor_gets_a_lift_angle(name: str, tmp_path: Path) -> None:
-    """From where one pallet lets go to where the other does: the lift and the locks, some degrees, of which 2° are the lift."""
+    """From where one pallet lets go to where the other does, as measured by hand: the 2° of the lift and a lock."""
     found = propose([assembly(scene_of(name), tmp_path / f"{name}.dxf", "body")])
     (tmp_path / "out").mkdir()
     for file, data in found.files.items():
         (tmp_path / "out" / file).write_bytes(data)
-    lift = load(tmp_path / "out").lift_angle
-    assert lift is not None and 2.0 < math.degrees(lift) < 4.0
+    scene = load(tmp_path / "out")
+    assert scene.lift_angle == pytest.approx(measured_lift(replace(scene, lift_angle=None)), abs=1e-5)
+    assert scene.lift_angle == pytest.approx(math.radians(2.4), abs=1e-5)
     assert next(guess for guess in found.guesses if guess.key == "timegrapher.lift_angle").why.startswith(
         "from where one pallet"
     )
@@ -130,6 +133,24 @@ def test_star_jumper_and_finger_are_known_by_their_names(tmp_path: Path) -> None
     assert found.doubts == ()
     keys = {guess.key for guess in found.guesses}
     assert {"springs.0.stiffness", "bodies.finger.velocity"} <= keys and "timegrapher.lift_angle" not in keys
+
+
+def test_drawings_that_have_zeros_of_their_own_are_doubted_and_a_jumper_beside_its_star_has_no_rate(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    star = [(r * math.cos(a), r * math.sin(a)) for k in range(7) for r, a in star_points(7, k)]
+    paths = [
+        drawing(tmp_path / "star.dxf", STAR=[star], STAR_PIVOT=[(0.0, 0.0, 0.5)]),
+        drawing(tmp_path / "finger.dxf", FINGER=[[(10.0, -0.5), (3.0, 0.0), (10.0, 0.5)]], FINGER_PIVOT=[(9.5, 0.0, 0.1)]),
+        drawing(tmp_path / "jumper.dxf", JUMPER=[[(0.0, 7.0), (-1.0, 11.0), (1.0, 11.0)]], JUMPER_PIVOT=[(0.0, 10.5, 0.1)]),
+    ]
+    assert main(["new", *map(str, paths), "-o", str(tmp_path / "out")]) == 0
+    assert "share one coordinate system" in capsys.readouterr().err
+    main(["check", str(tmp_path / "out")])
+    assert "the spring of jumper presses it on nothing" in capsys.readouterr().out
+    assert main(["run", str(tmp_path / "out"), "--duration", "3 s", "--no-plots", "-o", str(tmp_path / "run")]) == 0
+    said = capsys.readouterr().out
+    assert "s/d" not in said and "swings to and fro: look at where it stands" in said
 
 
 @pytest.mark.parametrize("teeth", [7, 12])
@@ -330,6 +351,16 @@ def test_teeth_that_lock_either_way_are_driven_as_they_lean(tmp_path: Path) -> N
     (value,) = (guess.value for guess in found.guesses if guess.key == "torques.0.value")
     assert value.startswith('"-')
     assert "lock and drive either way" in found.doubts[-1]
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_a_pin_lever_is_driven_the_way_in_which_its_wheel_drops_less(mirrored: bool, tmp_path: Path) -> None:
+    """Its 18 teeth lock and drive either way, and their tips lean against the right one."""
+    scene = from_mapping({"design": {"of": "pin_pallet", "teeth": 18}}, None)
+    path = assembly(scene, tmp_path / "roskopf.dxf", "body")
+    found = tried([mirror(path) if mirrored else path])
+    (value,) = (guess.value for guess in found.guesses if guess.key == "torques.0.value")
+    assert value.startswith('"-') != mirrored and found.doubts == ()
 
 
 @pytest.mark.parametrize("aside", [0.0, 3.0, -2.0])

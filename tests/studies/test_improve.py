@@ -13,9 +13,11 @@ import watchsim as ws
 import watchsim.studies.improve as improving
 import watchsim.studies.tolerance as tolerances
 from watchsim.cli import main
+from watchsim.paths import profiles_dir
 from watchsim.scene.errors import SceneError
 from watchsim.scene.load import changed
 from watchsim.scene.rewrite import rewritten, write_scene
+from watchsim.scene.toml import parsed
 from watchsim.studies.all_cycles import judged
 from watchsim.studies.goals import aims_from, knobs_from
 from watchsim.studies.workers import Here
@@ -224,6 +226,17 @@ def test_a_search_by_evolution_ends_in_the_optimum(tmp_path):
     found = ws.improve(scene, vary, "inertia max", ["period <= 0.2 s"], duration=1.0, method="differential-evolution")
     assert found.found and found.evaluations > 100
     assert found.keys["bodies.wheel.inertia"][1] == pytest.approx(4e-6 * (0.2 / math.tau) ** 2, rel=1e-6)
+
+
+def test_a_key_and_a_table_that_are_added_leave_every_other_line_as_it_was():
+    """Of a scene with [design] the torque is an entry that the file does not hold."""
+    scene = ws.load(profiles_dir() / "graham")
+    before = scene.path.read_text().splitlines()
+    text = rewritten(scene, {"design.lock": "0.5°", "torques.0.value": "0.3 mN·m", "bodies.pendulum.angle": "2.2°"})
+    assert [line for line in before if line not in text.splitlines()] == []
+    assert len(text.splitlines()) == len(before) + 1 + 3 + 4
+    again = parsed(text)
+    assert again["torques"] == [{"body": "wheel", "value": "0.3 mN·m"}] and again["design"]["lock"] == "0.5°"
 
 
 def test_a_file_keeps_its_comments(tmp_path):

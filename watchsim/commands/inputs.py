@@ -41,12 +41,25 @@ def load_scene(name: str, changes: list[str] | None = None, overlap: bool = True
     return scene
 
 
+def with_lift(run: Trajectory) -> Trajectory:
+    """Where a scene names no lift angle of its anchor, that which its geometry has; the lift angle is printed then."""
+    from math import degrees
+
+    from watchsim.escapement.measure import with_measured_lift
+
+    found = with_measured_lift(run)
+    if found is not run:
+        lift = f"{degrees(found.scene.lift_angle or 0.0):.4g}°"
+        say(f'Lift angle: {lift}, as check measures it; the scene names none (timegrapher.lift_angle = "{lift}").')
+    return found
+
+
 def read_run(folder: str) -> Trajectory:
     """The trajectory kept in a results folder."""
     from watchsim.results.folder import read_results
 
     try:
-        return read_results(folder)
+        return with_lift(read_results(folder))
     except (OSError, ValueError, KeyError) as error:
         words = str(error)
         raise InputError(words if words.startswith(folder) else f"{folder}: {words}") from error

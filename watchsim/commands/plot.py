@@ -74,8 +74,6 @@ def run(args: argparse.Namespace) -> int:
     trajectory = read_run(args.run_folder)
     paths = {kind: [secured_file(path, "the plot") for path in own] for kind, own in _places(args, kinds, formats).items()}
     bodies = _bodies(trajectory, args.bodies) if "kinematics" in kinds else parse_names(args.bodies)
-    if args.phases or {"phases", "timeline"} & set(kinds):
-        trajectory = _with_lift(trajectory)
     request = Request(trajectory, bodies, tuple(parse_names(args.quantities) or ()), window, width)
     if args.phases:
         _print_timeline(trajectory, window)
@@ -95,19 +93,6 @@ def run(args: argparse.Namespace) -> int:
     if not drawn:
         raise InputError(f"none of {', '.join(kinds)} can be drawn for this run.")
     return FINE
-
-
-def _with_lift(run: Trajectory) -> Trajectory:
-    """Phases need the lift angle of an anchor; where the scene names none, what its geometry says, which is said."""
-    from math import degrees
-
-    from watchsim.escapement.measure import with_measured_lift
-
-    found = with_measured_lift(run)
-    if found is not run:
-        lift = degrees(found.scene.lift_angle or 0.0)
-        say(f'Lift angle: {lift:.3g}°, as check measures it; the scene names none (timegrapher.lift_angle = "{lift:.3g}°").')
-    return found
 
 
 def _kinds(args: argparse.Namespace) -> list[str]:

@@ -89,7 +89,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _run(args: argparse.Namespace, held: contextlib.ExitStack) -> int:
-    from watchsim.commands.inputs import load_scene
+    from watchsim.commands.inputs import load_scene, with_lift
     from watchsim.mechanism.check import notes
     from watchsim.results.folder import check_folder
     from watchsim.simulation.state import Stop
@@ -153,6 +153,7 @@ def _run(args: argparse.Namespace, held: contextlib.ExitStack) -> int:
             kept, folder = folder, interrupted_place(folder)
             goal = dataclasses.replace(goal, folder=folder, replace=False)
             say(f"The earlier results in {kept} are kept; what was simulated of this run goes to {folder}.")
+        trajectory = with_lift(trajectory)
         summary = write(trajectory, goal, extras, changed, lines, panels)
     _report(args, trajectory, summary, _differences(against, trajectory, str(folder)), folder)
     return status(trajectory, summary)

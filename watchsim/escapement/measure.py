@@ -14,7 +14,7 @@ from watchsim.escapement.impulses import Impulse, Pallet, Roller, impulse, least
 from watchsim.escapement.turning import LEVEL
 from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.scene.lean import Teeth, teeth
-from watchsim.scene.roles import drive_direction, hinged_pallets, oscillators, partners, pitch, roles
+from watchsim.scene.roles import drive_direction, hinged_pallets, oscillators, pallet_word, partners, pitch, roles
 from watchsim.scene.scene import Scene
 from watchsim.scene.teeth import train
 from watchsim.scene.trains import ungeared
@@ -349,43 +349,45 @@ def with_measured_lift(run: Trajectory) -> Trajectory:
 
 
 # Is the wheel driven the way in which its teeth lock? Driven the other way some anchors and pin levers tick all the same, with
-# a swing far too small. The lean of the teeth does not tell: pins and their wheels have none, and a cylinder's teeth lean back.
+# a swing far too small. The lean of the teeth does not tell: those for pins lean either way, and those of a cylinder back.
 
 LOCKED = math.radians(1e-3)  # what locks by less, or is drawn in by less, does not
+WASTE = 2.0  # times the drop of the other way: so much no escapement is made to lose
 
 
 def wrong_way(scene: Scene) -> str | None:
-    """A sentence where the teeth do not lock as the wheel is driven, and would lock on both sides if driven the other way.
+    """A sentence where the teeth do not lock, or drop far, as the wheel is driven, and would lock on both sides the other way.
 
-    Nothing is said of teeth that lean the way they are driven.
+    Nothing is said of teeth for stones and pallets that lean the way they are driven.
     """
     wheel = roles(scene).wheel
     leans = None if wheel is None else teeth(scene, wheel)
-    if wheel is None or leans is None or leans.direction * drive_direction(scene, wheel) > 0.0:
+    if wheel is None or leans is None:
         return None
-    if _locks(here := measure(scene, few=1, fork_too=False)):
+    if leans.direction * drive_direction(scene, wheel) > 0.0 and pallet_word(scene) != "pin":
         return None
-    driving = train(scene, wheel)
+    here, driving = measure(scene, few=1, fork_too=False), train(scene, wheel)
     turned = tuple(
         replace(one, value=-one.value, table=tuple((at, -value) for at, value in one.table)) if one.body in driving else one
         for one in scene.torques
     )
     there = measure(replace(scene, torques=turned), few=1, fork_too=False)
-    if not _locks(there) or there.pallets is None or there.parts is None:
+    if not _locks(there) or there.parts is None or (_locks(here) and dropped(here) <= WASTE * dropped(there)):
         return None
-    seen = "nothing locks"
-    if here.pallets is not None:
-        what = "lock" if any(one.lock.value <= LOCKED for one in here.pallets) else "draw"
-        seen = f"{what} {_both(here.pallets, what)}"
+    pallets, lock = f"{there.parts.pallet}s", _both(there, "lock")
+    if _locks(here):
+        seen = f"drop far between the {pallets} ({_both(here, 'drop')}; driven the other way {_both(there, 'drop')})"
+    elif here.pallets is None:
+        seen = f"do not lock on the {pallets}; driven the other way they lock by {lock}"
+    else:
+        what = "draw" if all(one.lock.value > LOCKED for one in here.pallets) else "lock"
+        seen = f"do not lock on the {pallets} ({what} {_both(here, what)}); driven the other way they lock by {lock}"
     way = "clockwise" if drive_direction(scene, wheel) < 0.0 else "counter-clockwise"
-    return (
-        f"{wheel} is driven {way}, and so its teeth do not lock on the {there.parts.pallet}s ({seen}); driven the other way "
-        f"they lock by {_both(there.pallets, 'lock')}. Change the sign of the torque"
-    )
+    return f"{wheel} is driven {way}, and so its teeth {seen}. Change the sign of the torque"
 
 
-def _both(pallets: Sequence[Pallet], what: str) -> str:
-    return " and ".join(f"{signed(math.degrees(getattr(one, what).value), 3)}°" for one in pallets)
+def _both(function: Function, what: str) -> str:
+    return " and ".join(f"{signed(math.degrees(getattr(one, what).value), 3)}°" for one in function.pallets or ())
 
 
 def _locks(function: Function) -> bool:
@@ -394,3 +396,8 @@ def _locks(function: Function) -> bool:
         return False
     held = (one.lock.value > LOCKED and (not function.parts.detached or one.draw.value > LOCKED) for one in function.pallets)
     return all(held)
+
+
+def dropped(function: Function) -> float:
+    """The drop (rad) on both pallets together; infinite where there is none to measure."""
+    return math.inf if function.pallets is None else sum(one.drop.value for one in function.pallets)

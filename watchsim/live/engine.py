@@ -254,6 +254,7 @@ def _numbers(scene: Scene, give: Callable[..., None]) -> tuple[Trajectory | None
 
 
 def _run(scene: Scene, give: Callable[..., None]) -> Trajectory:
+    from watchsim.escapement.measure import with_measured_lift
     from watchsim.simulation.simulate import simulate
 
     said = time.perf_counter()
@@ -264,7 +265,7 @@ def _run(scene: Scene, give: Callable[..., None]) -> Trajectory:
             said = time.perf_counter()
             give("progress", done=done, whole=whole)
 
-    return simulate(scene, progress=progress, to_the_end=False)
+    return with_measured_lift(simulate(scene, progress=progress, to_the_end=False))
 
 
 def _compared(reference: Side | None, side: Side) -> dict[str, Any]:

@@ -150,13 +150,14 @@ def _pressed_on_nothing(scene: Scene) -> Iterator[Finding]:
     if any(other.motion != "pivot" or other.on is not None for other in others) or not (others and body.loops):
         return
     points = np.concatenate([points_along(edge, SHARES) for loop in body.loops for edge in loop.edges])
-    turned = complex(*body.position) + points * np.exp(1j * rest)
+    way = np.linspace(body.angle, rest, len(SHARES))  # a spring may be bent so far that the body would pass through at rest
+    turned = complex(*body.position) + points * np.exp(1j * way[:, None])
     for other in others:
         reach = max((reach_of([loop]) for loop in other.loops), default=0.0)
         if np.abs(turned - complex(*other.position)).min() < reach * (1.0 + ROUNDING):
             return
     names = " and ".join(other.name for other in others)
-    message = f"the spring of {name} presses it on nothing: at its rest it is out of reach of {names}"
+    message = f"the spring of {name} presses it on nothing: on its way to rest it is out of reach of {names}"
     yield Finding("unpressed", "warning", message, f"Look at the place of {name} with --png, and at rest under [[springs]].")
 
 

@@ -75,6 +75,12 @@ def _layout(moving: Sequence[Role], facings: Sequence[Facing], apart: bool, left
         yield from missing
         if missing:
             return
+        if not facings:
+            yield (
+                f"{names} never come within reach of each other: where gears that are not drawn join them, declare [[gears]]; "
+                f"else {cure}"
+            )
+            return
         yield f"{names} lie side by side and never come within reach of each other, as in a layout for cutting: {cure}"
 
 
@@ -136,9 +142,9 @@ def _clicks(moving: Sequence[Role]) -> Iterator[str]:
         least = math.dist(role.part.centre.at, teeth.centre) - nose_of(role.part, wheel.part).arm
         if least > teeth.inner:
             yield (
-                f"{role.name} can swing through the teeth of {wheel.name}: its nose comes no nearer to the centre than "
-                f"{1e3 * least:.3g} mm, and the teeth go down to {1e3 * teeth.inner:.3g} mm. Move its pivot, make it "
-                "longer, or give its spring a stop, as of a click that recoils"
+                f"{role.name} can swing through the teeth of {wheel.name} unless its spring has a stop, as that of a click "
+                f"that recoils: its nose comes no nearer to the centre than {1e3 * least:.3g} mm, and the teeth go down to "
+                f"{1e3 * teeth.inner:.3g} mm. Give stop under [[springs]], or move its pivot, or make it longer"
             )
 
 

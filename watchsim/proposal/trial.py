@@ -14,7 +14,7 @@ import numpy as np
 from watchsim.analysis.escape_wheel import not_held
 from watchsim.analysis.summary import summary
 from watchsim.analysis.verdict import verdict
-from watchsim.escapement.measure import measure
+from watchsim.escapement.measure import WASTE, dropped, measure
 from watchsim.escapement.turn import turn
 from watchsim.geometry.primitives import Point
 from watchsim.mechanism.overlap import chord_points, placed
@@ -37,6 +37,7 @@ STILL = 1e-6  # rad or m: what moves less in all that time does not move
 BY_TRIAL = "tried both ways, it works this way only"
 ALIKE = "it works either way"
 BY_FUNCTION = "only this way do its teeth lock and drive, as check --turn measures them"
+BY_DROP = "its teeth lock and drive either way, as check --turn measures them, and drop far less this way"
 EITHER_WAY = "its teeth lock and drive either way, as check --turn measures them; it is driven the way that their tips lean"
 TOGETHER = (
     "the drawings were taken to share one coordinate system: where each part is drawn about a zero of its own, give its place "
@@ -51,7 +52,8 @@ NEAR = 1.25  # times the swing that a scene starts with: a jam within that is in
 def tried(paths: Sequence[Path]) -> Proposal:
     """What drawings suggest, and what of it cannot be true, or does not work. NothingToPropose as for `propose`."""
     found = _tried(paths)
-    together = len(paths) > 1 and found.meets and found.doubts
+    apart = any(guess.key.endswith(".position") for guess in found.guesses)
+    together = len(paths) > 1 and found.doubts and not apart
     return found.doubting([TOGETHER]) if together else found
 
 
@@ -59,8 +61,9 @@ def _tried(paths: Sequence[Path]) -> Proposal:
     """What drawings suggest, with what a run of it shows among the doubts.
 
     Where nothing says which way the wheel turns, or it does not work the way that its teeth lean, as those of a cylinder
-    escapement, whose tips trail, it turns the way in which its function can be measured, where both are the way of the lean,
-    else the way in which it works: a trial has guessed inertias and torques, a measurement has none.
+    escapement, whose tips trail, it turns the way in which its function can be measured. Where both can, that is the way of the
+    lean, unless they drop far less the other way; where neither can, the way in which it works: a trial has guessed inertias
+    and torques, a measurement has none.
     """
     found = propose(paths)
     if not found.meets:
@@ -71,9 +74,12 @@ def _tried(paths: Sequence[Path]) -> Proposal:
         return found.doubting(faults)
     other = propose(paths, -found.way)
     faults_there, works_there = _run(other)
-    here, there = (_is_measured(found), works), (_is_measured(other), works_there)
+    drops = _drop(found), _drop(other)
+    here, there = (math.isfinite(drops[0]), works), (math.isfinite(drops[1]), works_there)
     by_function, leans = here[0] != there[0], not found.either_way
     if here[0] and there[0] and leans:  # the drawing says more than a trial
+        if drops[0] > WASTE * drops[1]:
+            return propose(paths, other.way, BY_DROP).doubting(faults_there)
         return found.doubting([*faults, _in_doubt(EITHER_WAY, faults)])
     if here == there:
         return (propose(paths, found.way, ALIKE) if works and not leans else found).doubting(faults)
@@ -99,10 +105,10 @@ class _TakesLong(Exception):
     pass
 
 
-def _is_measured(found: Proposal) -> bool:
-    """Do both pallets lock teeth, lift, and let them drop?"""
+def _drop(found: Proposal) -> float:
+    """Of both pallets together (rad); infinite where they do not lock teeth, lift, and let them drop."""
     with tempfile.TemporaryDirectory() as folder:
-        return measure(_loaded(found, Path(folder)), few=1, fork_too=False).pallets is not None
+        return dropped(measure(_loaded(found, Path(folder)), few=1, fork_too=False))
 
 
 def _jam(scene: Scene) -> str | None:

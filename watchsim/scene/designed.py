@@ -7,7 +7,8 @@ says is written over that scene, and what was changed since over both.
 from __future__ import annotations
 
 import copy
-from collections.abc import Mapping
+import math
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from numbers import Real
@@ -99,12 +100,36 @@ def chosen(design: Design, given: Mapping[str, object], faults: Faults | None = 
             numbers[name] = number_of(design.dimension(name), value)
         except UnitError as error:
             noted.add(f"{DESIGN}.{name}", str(error), shown(value))
-    for conflict in design.refusals(numbers):
+    refused = design.refusals(numbers)
+    for conflict in refused:
         key = f"{DESIGN}.{conflict.dimension}" if conflict.dimension else DESIGN
         noted.add(key, conflict.message, _seen(design, conflict.dimension, given))
+    changed = {name for name, number in numbers.items() if number != design.dimension(name).default}
+    if any(conflict.dimension not in changed for conflict in refused):  # what is named is as usual: what is not, is to change
+        for name, limit in _limits(design, numbers):
+            if name not in {conflict.dimension for conflict in refused}:
+                noted.add(f"{DESIGN}.{name}", f"works {limit} with all else as it is", shown(given[name]))
     if faults is None:
         noted.raise_any()
     return None if len(noted.found) > before else design.chosen(numbers)
+
+
+STEPS = 12  # halvings of the way from a default to a value that is refused
+
+
+def _limits(design: Design, numbers: Mapping[str, float]) -> Iterator[tuple[str, str]]:
+    """Each given dimension without which nothing is refused: its name, and how far it may go, in words."""
+    for name, number in numbers.items():
+        one = design.dimension(name)
+        works, fails = one.default, number
+        if one.count or works == fails or design.refusals({**numbers, name: works}):
+            continue
+        for _ in range(STEPS):
+            middle = 0.5 * (works + fails)
+            works, fails = (works, middle) if design.refusals({**numbers, name: middle}) else (middle, fails)
+        step = 10.0 ** (math.floor(math.log10(abs(works))) - 2) if works else 1.0
+        last = (math.floor if number > one.default else math.ceil)(works / step) * step
+        yield name, f"{'up to' if number > one.default else 'down to'} {one.shortly(last)}"
 
 
 def number_of(dimension: Dimension, value: object) -> float:

@@ -1,14 +1,14 @@
 """How is a scene file written again with some of its values changed, comments and order kept?
 
-Each value is replaced on its line. What is read back must be what was intended; where that fails the scene is rewritten,
-without comments.
+Each value is replaced on its line, new keys and tables get lines of their own. What is read back must be what was intended;
+where that fails the scene is rewritten, without comments.
 """
 
 from __future__ import annotations
 
 import copy
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -36,9 +36,8 @@ def rewritten(scene: Scene, changes: Mapping[str, str | float]) -> str:
             assign(wanted, key, value, faults)
         faults.raise_any()
     text = scene.path.read_text(encoding="utf-8-sig") if scene.path is not None and scene.path.is_file() else ""
-    for key, value in changes.items():
-        text = _with(text, key, value)
     try:
+        text = _edited(text, wanted)
         kept = parsed(text) == wanted
     except ValueError:
         kept = False
@@ -62,13 +61,47 @@ def _over_design(mapping: dict[str, Any], whole: Mapping[str, Any], key: str, va
         mapping.setdefault(section, {})[name] = value
 
 
+def _edited(text: str, wanted: Mapping[str, Any]) -> str:
+    """The text, to be read as that mapping, as far as lines and tables can be replaced, added and left out."""
+    added: dict[str, Any] = {}
+    for key, value in list(_differences(parsed(text), wanted)):
+        section, *names = key.split(".")
+        if not isinstance(value, Mapping):
+            text = _with(text, key, value)
+        elif isinstance(wanted[section], list):
+            added.setdefault(section, []).append(value)
+        elif names:
+            added.setdefault(section, {})[".".join(names)] = value
+        else:
+            added[section] = value
+    if not added:
+        return text
+    return "\n".join(part for part in (text and f"{text.rstrip()}\n", toml_text(added)) if part)
+
+
+def _differences(old: Any, new: Any, path: str = "") -> Iterator[tuple[str, Any]]:
+    """Key and new value of all that differs, None for what goes."""
+    ours, theirs = (dict(enumerate(one)) if isinstance(one, list) else one for one in (old, new))
+    yield from ((f"{path}{name}", None) for name in ours if name not in theirs)
+    for name, value in theirs.items():
+        there = ours.get(name)
+        if isinstance(value, (dict, list)) and type(value) is type(there):
+            yield from _differences(there, value, f"{path}{name}.")
+        elif isinstance(value, list) and value and isinstance(value[0], dict):
+            yield from ((f"{path}{name}.{number}", one) for number, one in enumerate(value))
+        elif value != there or type(value) is not type(there):
+            yield f"{path}{name}", value
+
+
 def _with(text: str, key: str, value: object) -> str:
-    """The text with one value replaced, or a line added to its table; as it is where neither can be done."""
+    """The text with one value replaced, or a line added to its table or left out; as it is where none of it can be done."""
     lines, found = text.splitlines(keepends=True), key_lines(text)
     table, _, name = key.rpartition(".")
     written = value_text(value)
     if key in found:
         at = found[key] - 1
+        if value is None:
+            return "".join(lines[:at] + lines[at + 1 :])
         place = _within(lines[at], key, name)
         if place is not None:
             lines[at] = lines[at][: place[0]] + written + lines[at][place[1] :]
