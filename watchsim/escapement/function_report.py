@@ -11,7 +11,7 @@ from watchsim.drawing.findings import Finding
 from watchsim.escapement.by_hand import Parts
 from watchsim.escapement.fork_and_pin import Fork, Quantity, Safety
 from watchsim.escapement.impulses import Impulse, Pallet
-from watchsim.escapement.measure import Function, wrong_way
+from watchsim.escapement.measure import LOCKED, Function, wrong_way
 from watchsim.scene.scene import Scene
 from watchsim.units import signed
 
@@ -19,10 +19,12 @@ from watchsim.units import signed
 
 PLAYTNER = "H. R. Playtner, An Analysis of the Lever Escapement (1910)"
 FINE_WORK = "Watch and Clock Escapements (1904): three quarters of a degree for fine work"
+OWN = "a rule of ours: as little as the pin has in its slot"
 LIMITS = "amplitude ranges of makers' data sheets: up to 310° to 315°"
 
 LEAST_LOCK, LEAST_DROP = 0.75, 0.75  # degrees
 LEAST_RUN = 0.1
+LEAST_SHAKE = 0.25
 PIN_SHAKE = (0.25, 0.5)
 SPREAD = 0.25
 UNEQUAL_DROP = 0.5
@@ -123,9 +125,14 @@ def _pallet(name: str, one: Pallet, held: tuple[float, float], detached: bool) -
         fix = "The lever is not drawn to its bank: turn its face to more draw."
         yield Judgement("draw", "warning", draw, hold, message, fix, "draw above the angle of friction", "Coulomb; " + PLAYTNER)
     lock = math.degrees(min(one.lock.value, one.lock.worst, key=lambda value: value))
-    if detached and lock < LEAST_LOCK:
-        what = "does not lock: the tooth drops on the impulse face" if lock <= 0.0 else f"locks by {lock:.2f}° only"
-        fix = "Draw out what locks, or bring lever and wheel together."
+    dead = not detached and abs(one.recoil.value) < LOCKED  # where the wheel recoils, one face may lock and drive
+    if (detached and lock < LEAST_LOCK) or (dead and lock < math.degrees(LOCKED)):
+        what = (
+            "does not lock: the tooth drops on the impulse face"
+            if lock <= math.degrees(LOCKED)
+            else f"locks by {lock:.2f}° only"
+        )
+        fix = "Draw out what locks, or bring it and the wheel together."
         yield Judgement("lock", "warning", lock, LEAST_LOCK, f"the {name} {what}", fix, "lock of ¾° or more", FINE_WORK)
     if detached and (run := _least(one.run)) < LEAST_RUN:
         message = f"the run on the {name} is {run:.2f}°: the lever hardly moves on after the drop"
@@ -160,6 +167,10 @@ def _jams(pallets: tuple[Pallet, Pallet], parts: Parts) -> Iterator[Judgement]:
             message = f"the wheel jams {where}: a tooth stands in the {other} one by {-shake:.3f}° of the wheel"
             fix = f"Narrow the teeth or the {parts.pallet}s."
             yield Judgement("shake", "warning", shake, 0.0, message, fix, "shake of the wheel above 0°", PLAYTNER)
+        elif shake < LEAST_SHAKE:
+            message = f"the wheel has a shake of {shake:.3f}° where the {name} {parts.pallet} is unlocked: it nearly jams"
+            fix = f"Narrow the teeth or the {parts.pallet}s."
+            yield Judgement("shake", "notice", shake, LEAST_SHAKE, message, fix, "shake of ¼° or more", OWN)
 
 
 def _fork(scene: Scene, made: Fork) -> Iterator[Judgement]:

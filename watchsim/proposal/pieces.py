@@ -27,7 +27,7 @@ from watchsim.geometry.loops import Loop, extents, winding
 from watchsim.geometry.primitives import Arc, Line, Point
 from watchsim.geometry.solids import area, section
 from watchsim.mechanism.overlap import chord_points, material, placed
-from watchsim.proposal.words import FIXED, part_of, part_word, shows_pivot
+from watchsim.proposal.words import FIXED, part_of, part_word, shows_arbor, shows_pivot
 from watchsim.units import known_unit
 
 CROSSING = "crossing"  # the code of a finding
@@ -202,8 +202,9 @@ def _marks(drawing: Drawing) -> tuple[list[Mark], frozenset[str]]:
             bores.setdefault(within, []).append(replace(mark, within=within))
     middles = {loop: section((loop,)).centroid for loop in bores}
     central = [min(marks, key=lambda one: math.dist(one.at, middles[loop])) for loop, marks in bores.items()]
-    found = points + axes + central  # others are holes for screws
-    return found, frozenset(mark.layer for mark in axes + central)
+    # An arbor beside all that is drawn, as that of pallets without their arms, is no hole for a screw, as others are.
+    loose = [one for one in drawn if one.single and one not in axes and shows_arbor(one.layer) and not _around(one, outlines)]
+    return points + axes + central + loose, frozenset(mark.layer for mark in axes + central + loose)
 
 
 def _around(mark: Mark, outlines: Sequence[Loop]) -> Loop | None:

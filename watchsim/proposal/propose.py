@@ -167,7 +167,13 @@ def _body(plan: Plan, role: Role) -> Iterator[str]:
     if axis is not None:
         return
     inertia = plan.amounts.inertia[role.name]
-    yield plan.guess(f"{key}.inertia", _text(f"{1e10 * inertia.value:.3g} mg·cm²"), inertia.why)
+    yield plan.guess(f"{key}.inertia", _text(_inertia(inertia.value)), inertia.why)
+
+
+def _inertia(value: float) -> str:
+    """In the first usual unit in which the number is short."""
+    factor, unit = next(((1e-10 * k, name) for k, name in ((1, "mg·cm²"), (1e3, "g·cm²")) if value < 1e-6 * k), (1.0, "kg·m²"))
+    return f"{value / factor:.3g} {unit}"
 
 
 def _pivot(plan: Plan, role: Role, key: str) -> Iterator[str]:

@@ -89,6 +89,10 @@ def shows_pivot(name: str) -> bool:
     return any(word in TURNING or word.endswith(COMPOUNDS) for word in words) or (bool(words) and words[-1] in CENTRES)
 
 
+def shows_arbor(name: str) -> bool:
+    return any(word in ARBORS or word.endswith("welle") for word in tokens(name))
+
+
 def part_of(name: str) -> str | None:
     """The kind of part that a name speaks of; None where it says nothing, or names features of two kinds."""
     hinted = hints_of(name)
