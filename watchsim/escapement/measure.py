@@ -21,6 +21,7 @@ from watchsim.scene.trains import ungeared
 from watchsim.simulation.trajectory import Trajectory
 from watchsim.units import signed
 
+DRIVES = 0.01  # turn of the wheel by turn of the lever: dead faces drawn as splines have some 1e-3, impulse faces 0.5 and more
 MOST = 0.75  # of a pitch: the wheel goes on by less in one beat; two teeth of a lever make a whole one
 
 
@@ -114,7 +115,7 @@ def _passage(wheel: Wheel, sweep: Sweep, side: float, tooth: int, met: float) ->
 
 
 def _repels(stretch: Stretch) -> bool:
-    return stretch.first.slope > LEVEL or stretch.last.slope > LEVEL
+    return max(stretch.first.slope, stretch.last.slope) > DRIVES
 
 
 def _locking(stretches: Sequence[Stretch]) -> Sequence[Stretch]:
