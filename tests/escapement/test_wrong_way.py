@@ -1,14 +1,16 @@
 """Is a wheel that is driven the way in which its teeth do not lock reported, and no other?"""
 
 import json
+import math
 from dataclasses import replace
 
+import ezdxf
 import pytest
 
 import watchsim as ws
 from watchsim.cli import main
 from watchsim.construction import registry
-from watchsim.escapement.measure import wrong_way
+from watchsim.escapement.measure import measure, wrong_way
 from watchsim.paths import profiles_dir
 from watchsim.scene.load import from_mapping, load
 from watchsim.scene.scene import Scene
@@ -54,3 +56,22 @@ def test_check_and_steady_say_it_of_a_scene_file(tmp_path, capsys, name):
     assert [one["severity"] for one in findings if one["code"] == "wrong-way"] == ["warning"]
     main(["steady", *options])
     assert json.loads(capsys.readouterr().out)["verdict"] == "backwards"
+
+
+def test_dead_faces_drawn_as_splines_lock_as_arcs_do(tmp_path):
+    """Fitted by arcs they lie a little to either side: that drives nothing."""
+    ws.designs.graham().write(tmp_path)
+    document = ezdxf.readfile(tmp_path / "pendulum.dxf")
+    space = document.modelspace()
+    for one in [one for one in space.query("LWPOLYLINE ARC") if one.dxf.layer == "PALLETS"]:
+        for edge in list(one.virtual_entities()) if one.dxftype() == "LWPOLYLINE" else [one]:
+            if edge.dxftype() == "ARC":
+                space.add_spline(fit_points=list(edge.flattening(1e-4)), dxfattribs={"layer": "PALLETS"})
+            else:
+                space.add_line(edge.dxf.start, edge.dxf.end, dxfattribs={"layer": "PALLETS"})
+        space.delete_entity(one)
+    document.saveas(tmp_path / "pendulum.dxf")
+    assert len(space.query("SPLINE")) >= 4
+    pallets = measure(load(tmp_path)).pallets
+    assert [math.degrees(one.lock.value) for one in pallets] == pytest.approx([0.4, 0.4], abs=2e-3)
+    assert [math.degrees(one.lift.value) for one in pallets] == pytest.approx([2.0, 2.0], abs=2e-3)

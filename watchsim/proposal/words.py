@@ -40,7 +40,8 @@ _FEATURES = {
 PARTS = {word: kind for kind, text in _PARTS.items() for word in _words(text)}
 FEATURES = {word: kind for kind, text in _FEATURES.items() for word in _words(text)}
 ESCAPING = _words("escape scape échappement scappamento")
-TEETH = _words("teeth tooth wheel gear pinion ratchet star zahn zaehne zähne rad steigrad dents roue étoile denti ruota stella")
+TEETH = _words("teeth tooth wheel gear pinion ratchet star zahn zaehne zähne rad dents roue étoile denti ruota stella")
+TEETH |= _words("steigrad gangrad ankerrad hemmungsrad hemmrad sperrrad sperrad stern")
 SPOKES = _words("spoke spokes hub speiche speichen nabe rayon rayons moyeu razza razze raggi mozzo")  # of wheels: no teeth
 WHEELS = frozenset(word for word, kind in PARTS.items() if kind == WHEEL)
 STONES = _words(
