@@ -17,6 +17,7 @@ from shapely import affinity
 
 from watchsim.cli import main
 from watchsim.escapement.measure import measured_lift
+from watchsim.escapement.turn import PASSES, turn, verdict
 from watchsim.proposal.propose import propose
 from watchsim.proposal.trial import tried
 from watchsim.scene.load import from_mapping, load
@@ -109,6 +110,7 @@ def test_an_anchor_gets_a_lift_angle(name: str, tmp_path: Path) -> None:
     scene = load(tmp_path / "out")
     assert scene.lift_angle == pytest.approx(measured_lift(replace(scene, lift_angle=None)), abs=1e-5)
     assert scene.lift_angle == pytest.approx(math.radians(2.4), abs=1e-5)
+    assert verdict(turn(scene))[0] == PASSES  # its anchor is on a spring, and not turned as far as a balance is
     assert next(guess for guess in found.guesses if guess.key == "timegrapher.lift_angle").why.startswith(
         "from where one pallet"
     )

@@ -15,6 +15,7 @@ import numpy as np
 
 from watchsim.contact.symmetry import turn_symmetry
 from watchsim.escapement.couples import Couple
+from watchsim.escapement.measure import measure
 from watchsim.escapement.turned_cycle import Cycle, assembly
 from watchsim.geometry.primitives import Point
 from watchsim.mechanism.compile import compile_scene
@@ -25,7 +26,7 @@ from watchsim.scene.trains import goes_with
 from watchsim.tolerances import CLEARANCE
 
 SWING = math.radians(180.0)  # of a balance whose scene starts nearer to rest
-BALANCE = math.radians(60.0)  # what starts further from rest swings as far as it starts
+BALANCE = math.radians(60.0)  # what starts further from rest swings as far as it starts, and so does an anchor
 CLOSED = 1e-3  # of a pitch, or rad: a cycle that ends so close to where it began is closed
 
 
@@ -76,7 +77,10 @@ def turn(scene: Scene, swing: float | None = None) -> Turn:
     led = names.index(oscillator.body)
     parts.stay.update(parts.train(led))
     start = parts.q[led] - oscillator.rest
-    reach = swing if swing is not None else abs(start) if abs(start) > BALANCE or _hangs(scene, led) else SWING
+    as_started = (
+        abs(start) > BALANCE or _hangs(scene, led) or (start and measure(scene, few=1, fork_too=False).swung is not None)
+    )
+    reach = swing if swing is not None else abs(start) if as_started else SWING
     far, near = oscillator.rest + math.copysign(reach, start or -1.0), oscillator.rest - math.copysign(reach, start or -1.0)
     cycle = Cycle(parts, led, {number: sign}, pitch)
     ends = [far] if parts.q[led] != far else []
@@ -120,6 +124,13 @@ def _driven(scene: Scene, oscillator: str | None) -> str:
     driven = next(torque.body for torque in scene.torques if torque.body != oscillator)
     touching = {side.body for contact in scene.contacts for side in contact.sides}
     return next((name for name in goes_with(scene, driven) if name in touching and scene.body(name).motion == "pivot"), driven)
+
+
+def _swings_as_started(scene: Scene, led: int, start: float) -> bool:
+    """A pendulum does, and an anchor on a spring: led further it would jam between the teeth."""
+    if abs(start) > BALANCE or _hangs(scene, led):
+        return True
+    return start != 0.0 and measure(scene, few=1, fork_too=False).swung is not None
 
 
 def _hangs(scene: Scene, led: int) -> bool:
