@@ -61,6 +61,15 @@ def test_a_layout_for_cutting_is_said_to_be_one(tmp_path: Path, capsys: pytest.C
     assert "s/d" not in said and "wheel never touched anything" in said
 
 
+def test_a_watch_a_metre_across_is_doubted(tmp_path: Path) -> None:
+    """Drawn in millimetres, and declared to be in inches."""
+    path = assembly(scene_of("graham"), tmp_path / "graham.dxf", "body")
+    document = ezdxf.readfile(path)
+    document.units = ezdxf.units.IN
+    document.saveas(path)
+    assert any("m across: look at the units of the drawing" in words for words in propose([path]).doubts)
+
+
 def test_an_assembly_raises_no_doubt(tmp_path: Path) -> None:
     for name in ("swiss_lever", "graham", "ratchet", "jumper", "detent"):
         assert propose([assembly(scene_of(name), tmp_path / f"{name}.dxf", "body")]).doubts == ()

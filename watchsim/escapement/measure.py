@@ -400,5 +400,8 @@ def _locks(function: Function) -> bool:
 
 
 def dropped(function: Function) -> float:
-    """The drop (rad) on both pallets together; infinite where there is none to measure."""
-    return math.inf if function.pallets is None else sum(one.drop.value for one in function.pallets)
+    """The drop (rad) on both pallets together; infinite where there is none to measure, or nothing draws a lever in."""
+    if function.pallets is None or function.parts is None:
+        return math.inf
+    drawn = not function.parts.detached or all(one.draw.value > LOCKED for one in function.pallets)
+    return sum(one.drop.value for one in function.pallets) if drawn else math.inf

@@ -176,6 +176,11 @@ def _inertia(value: float) -> str:
     return f"{value / factor:.3g} {unit}"
 
 
+def _torque(value: float) -> str:
+    factor, unit = next(((one, name) for one, name in ((1e-6, "µN·m"), (1e-3, "mN·m")) if abs(value) < 1e3 * one), (1.0, "N·m"))
+    return f"{value / factor:.3g} {unit}"
+
+
 def _pivot(plan: Plan, role: Role, key: str) -> Iterator[str]:
     centre, drawing = role.part.centre, plan.drawn[role.part.file]
     if centre is None or not role.moves:
@@ -220,7 +225,7 @@ def _forces(plan: Plan) -> Iterator[str]:
         value = plan.direction * amounts.torque.value
         yield from ("", "[[torques]]", f"body = {_text(amounts.driven)}")
         why = f"{plan.direction_why}; {amounts.torque.why}"
-        yield plan.guess("torques.0.value", _text(f"{1e6 * value:.3g} µN·m"), why)
+        yield plan.guess("torques.0.value", _text(_torque(value)), why)
     if amounts.driven is not None and amounts.viscous is not None:
         moving = [role for role in plan.roles if role.moves and role.task != CLICK and role.name != amounts.turned]
         for k, role in enumerate(moving):
@@ -257,6 +262,7 @@ def _mm(value: float) -> str:
 
 
 SCENE = "scene.toml"
+LARGE = 1.0  # m: a mechanism of this size is rather one whose units are wrong
 MOST_PIECES = 2000  # more is a picture, not a mechanism
 
 
@@ -310,6 +316,8 @@ def propose(paths: Sequence[Path], way: int = 0, because: str = "") -> Proposal:
     copies = drawn(sources, roles)
     plan = Plan(title, sources, copies, roles, met, unlikely, start, amounts, places, lean or -1, why, left_out)
     mended = [words for source in sources for words in source.mended]
+    if size > LARGE:
+        mended.append(f"the whole is {size:.3g} m across: look at the units of the drawing")
     pivots = [mark.at for source in sources for mark in source.marks if mark.point and is_mark(mark.layer)]
     while True:
         plan.doubts = [*doubts(roles, plan.facings, bool(places), bool(lean), bool(left_out), pivots), *mended]
