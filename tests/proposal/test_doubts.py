@@ -61,7 +61,7 @@ def test_a_layout_for_cutting_is_said_to_be_one(tmp_path: Path, capsys: pytest.C
     assert "s/d" not in said and "wheel never touched anything" in said
 
 
-def test_a_watch_a_metre_across_is_doubted(tmp_path: Path) -> None:
+def test_an_escape_wheel_a_metre_across_is_doubted(tmp_path: Path) -> None:
     """Drawn in millimetres, and declared to be in inches."""
     path = assembly(scene_of("graham"), tmp_path / "graham.dxf", "body")
     document = ezdxf.readfile(path)

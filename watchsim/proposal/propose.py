@@ -18,7 +18,7 @@ from watchsim.drawing.material import is_mark
 from watchsim.mechanism.overlap import overlaps
 from watchsim.proposal.doubts import doubts, lie_over
 from watchsim.proposal.facing import Facing, facings, named_facings
-from watchsim.proposal.parts import parts_of
+from watchsim.proposal.parts import parts_of, toothing
 from watchsim.proposal.pieces import Piece, Source, pieces_of, read_sources, size_of
 from watchsim.proposal.roles import Role, apart, first_of, lean_of, roles_of
 from watchsim.proposal.start import PIVOT, Amounts, Drawn, Start, amounts_of, drawn, side_by_side, start_of
@@ -262,7 +262,7 @@ def _mm(value: float) -> str:
 
 
 SCENE = "scene.toml"
-LARGE = 1.0  # m: a mechanism of this size is rather one whose units are wrong
+LARGE = 0.5  # m: the units of a wheel of this size are rather wrong; pendulums may be long
 MOST_PIECES = 2000  # more is a picture, not a mechanism
 
 
@@ -316,8 +316,10 @@ def propose(paths: Sequence[Path], way: int = 0, because: str = "") -> Proposal:
     copies = drawn(sources, roles)
     plan = Plan(title, sources, copies, roles, met, unlikely, start, amounts, places, lean or -1, why, left_out)
     mended = [words for source in sources for words in source.mended]
-    if size > LARGE:
-        mended.append(f"the whole is {size:.3g} m across: look at the units of the drawing")
+    wheel = first_of(roles, WHEEL)
+    teeth = None if wheel is None else toothing(wheel.part)
+    if wheel is not None and teeth is not None and 2.0 * teeth.outer > LARGE:
+        mended.append(f"{wheel.name} is {2.0 * teeth.outer:.3g} m across: look at the units of the drawing")
     pivots = [mark.at for source in sources for mark in source.marks if mark.point and is_mark(mark.layer)]
     while True:
         plan.doubts = [*doubts(roles, plan.facings, bool(places), bool(lean), bool(left_out), pivots), *mended]
