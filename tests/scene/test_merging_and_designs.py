@@ -217,7 +217,7 @@ def test_numbers_from_python_are_in_si(name: str, kind: units.Dimension, si: obj
         ({"lock": "0.4°", "length": "3 m"}, [("design.lock", ' = "0.4°"'), ("design.length", ' = "3 m"')]),
         ({"length": "1.5 m", "teeth": 9}, [("design.teeth", " = 9")]),
         ({"length": "1.5 m", "teeth": 10}, []),
-        ({"beat": "60000 vph"}, [("design", "")]),
+        ({"beat": "60000 vph"}, [("design", ""), ("design.beat", ' = "60000 vph"')]),  # how far it may go
     ],
 )
 def test_what_does_not_fit_is_said_with_the_value(given: dict[str, object], faults: list[tuple[str, str]]) -> None:
