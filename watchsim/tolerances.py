@@ -189,7 +189,7 @@ LEAST_FOR_LEDGER = 1.0 / 64.0
 # rad of the fastest coordinate's own time scale: the longest flight. Large: longer buffers; small: more steps.
 FLIGHT_PHASE = 1.6
 # Events within an instant, and impacts and decisions in a row at one event, at most. Large: hangs; small: ends runs.
-EVENTS_AT_ONCE, ROUNDS = 2000, 16
+EVENTS_AT_ONCE, ROUNDS = 2000, 64
 # Of `accumulation_time`: events that close count as at once. Large: ends runs; small: hangs where time stands.
 SAME_INSTANT = 1e-3
 

@@ -163,7 +163,10 @@ def decide_modes(model, closed, m, bearings, speed_zero, system, problem, out_gr
         if problem.x[i] > 0.0 and _slides_into_jam(system, m, i, problem):
             return False
     for i in range(m):
-        out_mode[closed.ids[i]] = _mode_of(closed, i, m, elements, rows, system, problem)
+        k = closed.ids[i]
+        out_mode[k] = _mode_of(closed, i, m, elements, rows, system, problem)
+        if problem.x[i] == 0.0 and out_mode[k] != STICK and jams(system.G, out_mode[k] * abs(problem.drag[i]), m, i):
+            out_mode[k] = OPEN  # as it slides any force on it would grow without bound
     for i in range(m):
         if out_mode[closed.ids[i]] == OPEN:
             system.force[2 * i], system.force[2 * i + 1] = 0.0, 0.0

@@ -284,6 +284,7 @@ def finish_event(model, state, f, options, scratch, record):
     accelerate(model, rest, 0, system, state.a)
     begin_terms(system.h, event.terms)
     event.loose[:] = 0
+    stands = state.instant.lenience > 1.0  # their modes came back at this instant
     first = 0
     while first < f:
         m = place_contacts(model, state.regime.active, first, state.regime.upto[first], event.pose, rest)
@@ -293,12 +294,11 @@ def finish_event(model, state, f, options, scratch, record):
         if not unique:
             state.counts.redundant_sets += 1
         apply(rest, m, system.force, system.inverse, state.a)
-        hold_at_dead_centre(model, state.regime.mode, state.u, m, system, rest, state.a)
+        stands = hold_at_dead_centre(model, state.regime.mode, state.u, m, system, rest, state.a) or stands
         add_terms(rest, m, system.force, event.terms)
         if m > 0:
             mark_loose(model, rest, m, state.regime.mode, event.label, state.a, event.loose)
     f = _closed_of(state.regime.mode, f, state.regime.active, state.regime.active)
-    stands = state.instant.lenience > 1.0  # their modes came back at this instant
     find_sleepers(model, state.regime, options, state.clock.time, stands, event, f, state.u, state.a)
     _list_awake_first(model, state.regime, f, event, state.instant)
 

@@ -365,10 +365,13 @@ def stands_at_dead_centre(model, u, island, r, solved, system, event):
     """Let an island of two bodies that stand, locked on the line of centres by its only contact, hold; True if it is one.
 
     Forces exist, but the rounding of the lever arms, which are one vector, decides whether the problem for them is `solved`,
-    and whether that lets them begin to roll, which the lock forbids either way.
+    and whether that lets them begin to roll, which the lock forbids either way. Where nothing presses the contact they part.
     """
     rest = event.rest
     if r != 1 or (solved and event.decided[rest.ids[0]] == OPEN) or not _locks(model, rest, 0, system):
+        return False
+    if solved and not system.force[0] > 0.0:
+        event.decided[rest.ids[0]] = OPEN
         return False
     for j in range(len(event.label)):
         other = j != rest.coord[0, 0] and j != rest.coord[0, 1]
@@ -380,13 +383,15 @@ def stands_at_dead_centre(model, u, island, r, solved, system, event):
 
 @kernel
 def hold_at_dead_centre(model, mode, u, m, system, rest, out_a):
-    """Take the accelerations from bodies that stand, locked by one of the m contacts in force in `rest`."""
+    """Take the accelerations from bodies that stand, locked by one of the m contacts in force in `rest`; True if any do."""
+    found = False
     for i in range(m):
         if mode[rest.ids[i]] != STICK or not system.force[2 * i] > 0.0 or not _locks(model, rest, i, system):
             continue
         one, other = rest.coord[i, 0], rest.coord[i, 1]
         if u[one] == 0.0 and u[other] == 0.0:
-            out_a[one], out_a[other] = 0.0, 0.0
+            out_a[one], out_a[other], found = 0.0, 0.0, True
+    return found
 
 
 @kernel

@@ -24,7 +24,7 @@ from watchsim.simulation.coupled_motion import (
     place_contacts,
     sort_by_island,
 )
-from watchsim.simulation.modes import decide
+from watchsim.simulation.modes import decide, stands_at_dead_centre
 from watchsim.simulation.options import longest_step
 from watchsim.tolerances import LOAD_ROUGH
 
@@ -111,6 +111,8 @@ def _stands(model, state, island, m, options, scratch):
     for i in range(len(grip)):
         grip[i] = state.regime.grip[i]
     r, solved = decide(model, state, island, m, options, system, work.problem, event, grip)
+    if stands_at_dead_centre(model, state.u, island, r, solved, system, event):
+        return True
     if not solved or work.problem.last.jammed:
         return False
     accelerate(model, event.rest, 0, system, system.a)
