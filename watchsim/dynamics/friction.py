@@ -100,6 +100,7 @@ class LastProblem:
     keeps: int  # 1: what has begun to slide with less friction in the round before goes on; for one decision
     together: int  # 1: contacts that hand forces on to each other slide into a jam
     seized: int  # 1: a bearing has jammed, and the impulses that stop it are to be found
+    near: float  # share of a contact's force up to which what is left of it by friction counts as nothing
 
 
 class KnownProblem(NamedTuple):

@@ -122,6 +122,8 @@ def impact(model, closed, m, restitution, speeds, system, problem, phases, out_u
                 break
     if last.seized or last.jammed:
         trace_loads(model, closed, m, bearings, 0.0, system, problem)
+        for p in range(bearings if last.seized else 0):
+            problem.pivots.grip[p] *= 1.0 + RAISED * last.near
         _couple(model, closed, m, (False, restitution, jam_speed), sizes, system.G, problem, phases)
     returns = False
     for i in range(m):
@@ -294,7 +296,7 @@ def _compress(m, sizes, jam_speed, G, problem, phases):
     return solver != Solver.FAILED
 
 
-RAISED = 3.0  # times `PAINLEVE`: what takes contacts past a bound that depends on the friction of all of them
+RAISED = 3.0  # times `near`: what takes contacts past a bound that depends on the friction of all of them
 
 
 @kernel
@@ -308,8 +310,8 @@ def raise_friction(G, m, problem):
         if problem.element[i] >= 0 and abs(own - problem.drag[i] * both) <= PAINLEVE * own:
             problem.drag[i] = (1.0 + PAINLEVE) * own / both
             problem.width[problem.element[i]] = 2.0 * problem.drag[i]
-        elif problem.element[i] >= 0 and problem.last.together == 1:
-            problem.drag[i] *= 1.0 + RAISED * PAINLEVE
+        elif problem.element[i] >= 0 and (problem.last.together == 1 or problem.last.seized == 1):
+            problem.drag[i] *= 1.0 + RAISED * problem.last.near
             problem.width[problem.element[i]] = 2.0 * problem.drag[i]
 
 

@@ -78,6 +78,7 @@ def decide(model, state, island, m, options, system, problem, event, out_grip):
     """
     r = resting(model, m, event.closed, event.pose, event.zero, event.rest)
     problem.last.jammed, problem.last.coupled, problem.last.sliders = 0, 0, 0
+    problem.last.near = PAINLEVE * min(state.instant.lenience, NEARLY_SEIZED)
     begin_loads(model, state.clock.time, state.q, state.u, system)
     for number in range(LOAD_ROUNDS):
         forces(model, state.clock.time, state.q, state.u, system.h)
@@ -97,11 +98,7 @@ def decide(model, state, island, m, options, system, problem, event, out_grip):
         press_contacts(model, event.rest, r, system.force, system)
         changed = rub(model, out_grip, system)
         if _hold(r, bearings, out_grip, system, problem) and has_settled(changed, number):
-            problem.last.jammed = (
-                1
-                if _seizes(model, event.rest, r, out_grip, PAINLEVE * min(state.instant.lenience, NEARLY_SEIZED), system)
-                else 0
-            )
+            problem.last.jammed = 1 if _seizes(model, event.rest, r, out_grip, problem.last.near, system) else 0
             return r, True
     return r, _decide_coupled(model, state, island, r, options, system, problem, event, out_grip)
 
@@ -127,9 +124,7 @@ def _decide_coupled(model, state, island, r, options, system, problem, event, ou
                 break
             if has_settled(turn_to_loads(r, bearings + last.sliders, system.force, problem), number):
                 last.coupled, last.sliders = 0, 0
-                last.jammed = (
-                    1 if _seizes(model, rest, r, out_grip, PAINLEVE * min(state.instant.lenience, NEARLY_SEIZED), system) else 0
-                )
+                last.jammed = 1 if _seizes(model, rest, r, out_grip, last.near, system) else 0
                 return True
     last.coupled, last.sliders = 0, 0
     return False
@@ -143,7 +138,7 @@ def _seizes(model, rest, r, grip, share, system):
     """
     for i in range(r):
         force, presses = system.force[2 * i : 2 * i + 2], system.force[2 * i] * system.G[2 * i, 2 * i]
-        terms, rubs = abs(rest.kin[i].bar_N), 0.0
+        terms, rubs, slides = abs(rest.kin[i].bar_N), 0.0, max(0.0, -force[1] * system.G[2 * i, 2 * i + 1])
         for k in range(rest.slots[i]):
             j, drag, own = rest.coord[i, k], 0.0, 0.0
             if grip[j] == FORWARD or grip[j] == BACKWARD:
@@ -151,10 +146,10 @@ def _seizes(model, rest, r, grip, share, system):
                 for p in range(len(model.bearings)):
                     if model.bearings[p].coordinate == j:
                         own = grip[j] * model.bearings[p].grip * math.sqrt(force[0] * force[0] + force[1] * force[1])
-            share = abs(rest.w_N[i, k] * system.inverse[j])
-            terms += share * (abs(system.h[j] + drag) + abs(drag - own))
-            rubs += share * abs(own)
-        if share * presses > terms and 2.0 * rubs > presses:
+            by = abs(rest.w_N[i, k] * system.inverse[j])
+            terms += by * (abs(system.h[j] + drag) + abs(drag - own))
+            rubs += by * abs(own)
+        if share * presses > terms and rubs > 0.0 and 2.0 * (rubs + slides) > presses:
             return True
     return False
 
