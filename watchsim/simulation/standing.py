@@ -30,7 +30,7 @@ from watchsim.tolerances import LOAD_ROUGH
 
 LOOKS = 8  # along a step
 LONGEST = 0.1  # of the longest step: between two of them loads change little
-HALVINGS = 60
+HALVINGS = 30  # far enough beyond the fall for what moves then to be more than rounding
 
 
 @kernel
