@@ -98,7 +98,7 @@ def decide(model, state, island, m, options, system, problem, event, out_grip):
         press_contacts(model, event.rest, r, system.force, system)
         changed = rub(model, out_grip, system)
         if _hold(r, bearings, out_grip, system, problem) and has_settled(changed, number):
-            problem.last.jammed = 1 if _seizes(model, event.rest, r, out_grip, problem.last.near, system) else 0
+            problem.last.jammed = 1 if _seizes(model, event, r, out_grip, problem.last.near, system) else 0
             return r, True
     return r, _decide_coupled(model, state, island, r, options, system, problem, event, out_grip)
 
@@ -124,21 +124,23 @@ def _decide_coupled(model, state, island, r, options, system, problem, event, ou
                 break
             if has_settled(turn_to_loads(r, bearings + last.sliders, system.force, problem), number):
                 last.coupled, last.sliders = 0, 0
-                last.jammed = 1 if _seizes(model, rest, r, out_grip, last.near, system) else 0
+                last.jammed = 1 if _seizes(model, event, r, out_grip, last.near, system) else 0
                 return True
     last.coupled, last.sliders = 0, 0
     return False
 
 
 @kernel
-def _seizes(model, rest, r, grip, share, system):
-    """True if the force of a contact is what the friction that it makes in bearings makes of that share of it.
+def _seizes(model, event, r, grip, share, system):
+    """True if the force of a contact is what its friction and that in bearings make of that share of it.
 
     It grows without bound as it comes to pass a pivot at friction times radius, where none goes with its load any more.
     """
+    rest = event.rest
     for i in range(r):
         force, presses = system.force[2 * i : 2 * i + 2], system.force[2 * i] * system.G[2 * i, 2 * i]
-        terms, rubs, slides = abs(rest.kin[i].bar_N), 0.0, max(0.0, -force[1] * system.G[2 * i, 2 * i + 1])
+        slides = -force[1] * system.G[2 * i, 2 * i + 1] if event.decided[rest.ids[i]] != STICK else 0.0
+        terms, rubs = abs(rest.kin[i].bar_N), 0.0
         for k in range(rest.slots[i]):
             j, drag, own = rest.coord[i, k], 0.0, 0.0
             if grip[j] == FORWARD or grip[j] == BACKWARD:
@@ -149,7 +151,7 @@ def _seizes(model, rest, r, grip, share, system):
             by = abs(rest.w_N[i, k] * system.inverse[j])
             terms += by * (abs(system.h[j] + drag) + abs(drag - own))
             rubs += by * abs(own)
-        if share * presses > terms and rubs > 0.0 and 2.0 * (rubs + slides) > presses:
+        if share * presses > terms and rubs > 0.0 and 2.0 * (rubs + max(0.0, slides)) > presses:
             return True
     return False
 
