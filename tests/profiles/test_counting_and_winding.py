@@ -6,6 +6,7 @@ slot and takes up the play within the first few degrees, which are left out.
 """
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -19,6 +20,7 @@ from shapely.geometry import Point as Spot
 import watchsim as ws
 from watchsim import designs
 from watchsim.construction.geneva_stop import GenevaStop
+from watchsim.scene.scene import Prescribed
 from watchsim.simulation.state import EventKind
 from watchsim.simulation.trajectory import Trajectory
 
@@ -114,6 +116,19 @@ def test_by_the_outlines_there_is_no_way_on():
 
     assert tuple(cross.position) == (0.0, 0.0)
     assert free(-math.radians(0.05)) and not free(math.radians(0.05))
+
+
+def test_a_motor_that_cannot_stall_is_refused_at_the_stop():
+    """Driven, the arbor runs into the blunt arm, which no force turns aside: there the hand is stopped."""
+    scene = designs.geneva_stop().scene()
+    arbor = replace(scene.body("arbor"), prescribed=Prescribed(), velocity=(math.tau,))
+    cross = tuple(one for one in scene.damping if one.body == "cross")
+    driven = replace(scene, bodies=(arbor, scene.body("cross")), damping=cross, springs=(), torques=(), duration=5.0)
+    run, stopped = ws.simulate(driven), ws.simulate(scene)
+    assert run.stop == ws.Stop.BLOCKED and run.stop.gave_up
+    assert run.energy["in_J"] < 1e-3
+    end, held = (float(one.q[-1, one.slices["arbor"].start]) for one in (run, stopped))
+    assert end == pytest.approx(held, abs=math.radians(3.0))
 
 
 def test_the_stop_holds_what_the_hand_has_more_than_the_mainspring():

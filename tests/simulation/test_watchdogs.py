@@ -72,9 +72,9 @@ def test_a_correction_that_stops_bodies_ends_the_run(place: str, tmp_path: Path)
 def test_changes_of_energy_are_explained_up_to_rounding() -> None:
     model, options = compile_scene(profile("incline")).model, options_for(0.1, 1e-9, 1e-3)
     explained = callable_kernel(is_explained)
-    assert explained(model, options, 1.0, 1.0 + 5e-7, 1.0)
-    assert not explained(model, options, 1.0, 1.0 - 5e-6, 1.0)
-    assert explained(model, options, 1e-20, 0.0, 1.0)  # of what was highest, or slow enough to count as standing
+    assert explained(model, options, 1.0, 5e-7, 1.0)
+    assert not explained(model, options, 1.0, -5e-6, 1.0)
+    assert explained(model, options, 1e-20, -1e-20, 1.0)  # of what was highest, or slow enough to count as standing
 
 
 @pytest.mark.parametrize("slots", [7, 8])

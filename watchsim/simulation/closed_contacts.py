@@ -264,9 +264,28 @@ def resting(model, m, closed, pose, zero, out_rest):
 
 @kernel
 def is_immovable(model, closed, i):
-    """True if the gap of row i of `closed` changes by next to nothing however its bodies move."""
+    """True if the gap of row i of `closed` changes by next to nothing however its bodies move, driven ones among them."""
+    for slot in range(closed.slots[i]):
+        is_driven = model.coordinates[closed.coord[i, slot]].driven
+        if is_driven and closed.w_N[i, slot] ** 2 > IMMOVABLE * closed.w_T[i, slot] ** 2:
+            return False
+    return gives_no_way(model, closed, i)
+
+
+@kernel
+def gives_no_way(model, closed, i):
+    """True if no force opens the gap of row i of `closed`, whatever drives a body into it."""
     across, along, _ = _mobilities(model, closed, i)
     return across <= IMMOVABLE * along
+
+
+@kernel
+def is_blocked(model, m, event):
+    """True if a driven body runs into what cannot give way, at one of the m contacts in `event.closed`."""
+    for i in range(m):
+        if event.closed.kin[i].gN_dot < -event.zero[i] and gives_no_way(model, event.closed, i):
+            return True
+    return False
 
 
 @kernel
@@ -371,11 +390,13 @@ def kinetic_energy(model, u):
 
 
 @kernel
-def is_explained(model, options, before, after, highest):
-    """True if a change of kinetic energy from `before` to `after` (J, impulses taken out) is of the size of rounding."""
-    allowed = EXPLAINED_SHARE * before + EXPLAINED_OF_HIGHEST * highest
-    change = abs(after - before)
-    if change <= allowed:
+def is_explained(model, options, energy, change, highest):
+    """True if a `change` of the kinetic `energy` (J, impulses taken out) is of the size of rounding.
+
+    `energy`: the larger of that before and after, since a driven body that strikes what is at rest brings all of it.
+    """
+    allowed = EXPLAINED_SHARE * energy + EXPLAINED_OF_HIGHEST * highest
+    if abs(change) <= allowed:
         return True
     drift = 0.0
     for i in range(len(model.coordinates)):
@@ -383,4 +404,4 @@ def is_explained(model, options, before, after, highest):
         if not coordinate.driven:
             drift += 0.5 * coordinate.mass * (options.speed_drift / options.size * coordinate.scale) ** 2
     # Of a body that is nearly at rest, its drift is a large share: by so much it may be off on top of its speed.
-    return change <= allowed + 2.0 * math.sqrt(before * drift) + STOPPABLE_SPEED**2 * drift
+    return abs(change) <= allowed + 2.0 * math.sqrt(energy * drift) + STOPPABLE_SPEED**2 * drift

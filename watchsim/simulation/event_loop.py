@@ -22,6 +22,7 @@ from watchsim.simulation.closed_contacts import (
     gather,
     hand_over,
     insert,
+    is_blocked,
     is_explained,
     kinetic_energy,
     release_left,
@@ -219,6 +220,8 @@ def resolve(model, state, island, m, options, scratch, record):
     for _ in range(ROUNDS):
         set_rate_zeros(event.closed, m, exactly, options, event.peak_speed, event.zero)
         if jammed or approaching(m, event.closed, event.zero):
+            if is_blocked(model, m, event):
+                return Stop.BLOCKED, 0
             jam_speed = options.speed_zero if jammed else 0.0
             if not collide(model, state, island, m, options, jam_speed, scratch, record):
                 if stop_locked(model, state, m, work.system, event, record):
@@ -471,9 +474,8 @@ def handle_waiting_event(model, cells, state, options, scratch, record):
         return code
     state.worst.kinetic_energy = max(state.worst.kinetic_energy, before)
     moving = kinetic_energy(model, state.u)
-    after = moving + (state.sums.impacts - state.sums.drive - lost) + (state.sums.damping - rubbed)
-    # Where a driven body strikes what is at rest, all energy comes in at this instant, with its rounding.
-    if not is_explained(model, options, before, after, max(state.worst.kinetic_energy, moving)):
+    change = moving - before + (state.sums.impacts - state.sums.drive - lost) + (state.sums.damping - rubbed)
+    if not is_explained(model, options, max(before, moving), change, max(state.worst.kinetic_energy, moving)):
         return Stop.UNEXPLAINED
     if state.counts.impacts + state.counts.jams > blows:
         state.instant.decisions = 0  # the same modes may be decided again: the velocities are others

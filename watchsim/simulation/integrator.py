@@ -572,7 +572,8 @@ def accept_coupled(model, state, options, end, touched, scratch):
     for i in range(n):
         state.a[i] = smooth.dy[n + i]
     state.worst.kinetic_energy = max(state.worst.kinetic_energy, before)
-    return end, is_explained(model, options, before, kinetic_energy(model, state.u), state.worst.kinetic_energy)
+    change = kinetic_energy(model, state.u) - before
+    return end, is_explained(model, options, before, change, state.worst.kinetic_energy)
 
 
 @kernel

@@ -69,6 +69,7 @@ class Stop(IntEnum):
     FAR_AWAY = 13
     FOREGONE = 14
     BEARING_JAMS = 15
+    BLOCKED = 16
     OVERLAP = 20
     UNEXPLAINED = 21
     LEDGER = 22
@@ -86,7 +87,7 @@ class Stop(IntEnum):
     @property
     def gave_up(self) -> bool:
         """True when the solver could not go on, or its result is known to be wrong (exit status 3)."""
-        others = (Stop.OUT_OF_MEMORY, Stop.FAR_AWAY, Stop.BEARING_JAMS)
+        others = (Stop.OUT_OF_MEMORY, Stop.FAR_AWAY, Stop.BEARING_JAMS, Stop.BLOCKED)
         could_not = Stop.TOO_MANY_EVENTS <= self <= Stop.TOO_MANY_CONTACTS or self in others
         return could_not or self.is_wrong
 
@@ -108,6 +109,10 @@ _SENTENCES = {
     Stop.BEARING_JAMS: (
         "a bearing jams: no friction goes with the load that it makes, for a force on its body passes nearer to the pivot than "
         "friction times radius. A smaller radius or less friction under [[bearings]] helps, or coulomb in place of them"
+    ),
+    Stop.BLOCKED: (
+        "a driven body runs into what cannot give way: a motor that stalls is a torque with damping, under [[torques]] and "
+        '[[damping]], in place of motion = "driven"'
     ),
     Stop.STEP_TOO_SMALL: "the step became too small for the requested tolerance",
     Stop.NOT_FINITE: "a coordinate or velocity is no longer a finite number",
