@@ -364,7 +364,9 @@ def time_to_touch(gap, rate, bounds, options):
     if gap <= 0.0:
         return 0.0
     time = gap / -rate
-    return time if 0.5 * bend * time * time <= options.gap_zero else safe_time(gap, -rate, closing, bend, distance)
+    curved = closing * closing / (0.5 * distance) if distance > 0.0 else math.inf
+    is_straight = 0.5 * (bend + curved) * time * time <= options.gap_zero and closing * time <= 0.5 * distance
+    return time if is_straight else safe_time(gap, -rate, closing, bend, distance)
 
 
 @kernel
