@@ -4,6 +4,7 @@ import json
 import math
 import re
 import shutil
+from dataclasses import replace
 
 import pytest
 
@@ -137,3 +138,9 @@ def test_the_power_put_in_is_that_of_the_drive_and_not_what_gravity_lends():
     for run, power in zip(runs, ws.compare(*runs).outputs["power_in_W"].values, strict=True):
         q = run.q[:, run.slices[wheel].start]
         assert power * run.simulated == pytest.approx(run.scene.torques[0].value * (q[-1] - q[0]), rel=1e-9)
+
+
+def test_a_clock_whose_scene_names_no_lift_angle_is_answered_by_its_limit_cycle():
+    scene = replace(ws.load(GRAHAM), lift_angle=None)
+    found = ws.compare(scene, scene)
+    assert found.sides[0].cycle and found.outputs["amplitude_deg"].values[0] == ws.steady(scene).amplitude_deg

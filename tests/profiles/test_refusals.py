@@ -124,7 +124,6 @@ BLAMED: dict[str, list[tuple[dict[str, float], str]]] = {  # design: dimensions,
         ({"drop": 1.0}, "drop"),
         ({"lift": 20.0, "friction": 0.25}, "lift"),
         ({"start": 40.0, "lift": 70.0}, "start"),
-        ({"torque": 5.0}, "torque"),
         ({"torque": 0.004}, "torque"),
     ],
     "duplex": [

@@ -170,7 +170,8 @@ def headlines(run: Trajectory, numbers: Mapping[str, Any]) -> str:
     """The headline numbers in watchmakers' units, a line each; `numbers` as from `watchsim.analysis.summary.summary(run)`."""
     timing = (*_verdict(numbers), *_timing(numbers), *_places(run, numbers))
     parts = (*timing, *_contacts(numbers), *_energy(run), *_solver(run, numbers), *_verdicts(numbers))
-    lines = [f"  {label:{LABEL}}{text}" for label, text in parts]
+    width = max(LABEL, *(len(label) + 1 for label, _ in parts))
+    lines = [f"  {label:{width}}{text}" for label, text in parts]
     return "\n".join([run.scene.title, *lines])
 
 

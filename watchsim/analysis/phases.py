@@ -38,7 +38,7 @@ from watchsim.analysis.timing import (
     is_recorded,
     with_the_last,
 )
-from watchsim.scene.roles import Roles, hinged_pallets, keeps_time, pallet_word, with_anchor
+from watchsim.scene.roles import Roles, drive_direction, hinged_pallets, keeps_time, pallet_word, with_anchor
 from watchsim.simulation.recording import Pair
 from watchsim.simulation.state import EventKind
 from watchsim.simulation.trajectory import Array, Trajectory
@@ -115,8 +115,8 @@ TOUCH = (EventKind.IMPACT, EventKind.CLOSE)
 
 @dataclass(frozen=True, slots=True)
 class WheelContacts:
-    """Contact events of the wheel: times, its progress, how many contacts hold after each, which are touches, and on what; and
-    when the lever touches its banking."""
+    """Contact events of the wheel: times, its progress, how many contacts hold after each, which are touches that may push the
+    lever, and on what; and when the lever touches its banking."""
 
     times: Array
     angle: Array
@@ -129,7 +129,8 @@ class WheelContacts:
 def wheel_contacts(run: Trajectory, parts: Roles, found: Beats, within: NDArray[np.bool_]) -> WheelContacts:
     """Those of the beats `within` of the ones found, of the two after them, and the last one before."""
     assert parts.wheel and parts.lever
-    times, kinds, which = contact_columns(run, involves(parts.wheel), ["t", "kind", "contact"], *TOUCH, EventKind.OPEN)
+    names = ["t", "kind", "contact", "impulse_normal"]
+    times, kinds, which, blows = contact_columns(run, involves(parts.wheel), names, *TOUCH, EventKind.OPEN)
     fixed = {body.name for body in run.scene.bodies if body.motion == "fixed"}
     (banking,) = contact_columns(run, between(parts.lever, fixed), ["t"], *TOUCH)
     near = _near(times, found, np.flatnonzero(within))
@@ -137,7 +138,18 @@ def wheel_contacts(run: Trajectory, parts: Roles, found: Beats, within: NDArray[
     on = np.array([FACES.index(_face(run.pairs[contact], parts)) for contact in used.tolist()], np.int8)[back]
     holding, touching = held(times, kinds, run.spans)[near].copy(), kinds[near] != EventKind.OPEN
     times = times[near].copy()
+    touching &= ~((blows[near] > 0.0) & _struck_on(run, parts.wheel, times))
     return WheelContacts(times, progress(run, parts.wheel, times), holding, touching, on, banking)
+
+
+def _struck_on(run: Trajectory, wheel: str, times: Array) -> NDArray[np.bool_]:
+    """At which times a blow drove the wheel on: one on the back of a tooth, where a pallet may push but cannot be pushed."""
+    before, after = np.searchsorted(run.t, times, side="left"), np.searchsorted(run.t, times, side="right") - 1
+    speed = drive_direction(run.scene, wheel) * run.u[:, run.slices[wheel].start]
+    known = after > before
+    last = len(speed) - 1
+    jump: NDArray[np.bool_] = known & (speed[np.minimum(after, last)] - speed[np.minimum(before, last)] > 0.0)
+    return jump
 
 
 def _near(times: Array, found: Beats, within: NDArray[np.int64]) -> slice:

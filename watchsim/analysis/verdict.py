@@ -38,8 +38,9 @@ from watchsim.analysis.verdict_kinds import (
     when,
 )
 from watchsim.analysis.watch import Arms, Face, Watch, arms, arms_at, at_lever, face, in_force, unlocked, watch_of
-from watchsim.escapement.measure import wrong_way
+from watchsim.escapement.measure import banks_of, wrong_way
 from watchsim.scene.roles import is_driven, keeps_time, swings, timekeeper
+from watchsim.scene.scene import ALL
 from watchsim.simulation.knock_tally import ANGLE, CONTACT, FIRST, LAST, PLACE, TOGETHER
 from watchsim.simulation.state import EventKind
 from watchsim.simulation.tally import sums_of
@@ -188,6 +189,8 @@ def overbanking(watch: Watch) -> Verdict | None:
     banked = [number for number in in_force(run, [t])[0] if number in bankings]
     if not banked or not watch.has_shapes or not _pressed_on(arms(run, watch.compiled, t, [contact, *banked]), watch.lever):
         return None
+    if _stayed(watch):
+        return None
     over, pair, free = _went_over(watch), str(run.pairs[contact]), running_free(watch)
     drive = watch.drive(over)
     wheel = f"{watch.wheel}, under {torque_text(drive)}, is not unlocked"
@@ -206,6 +209,16 @@ def _pressed_on(found: Arms, lever: str) -> bool:
     """Does the first contact turn the lever against all others?"""
     turned, *held = (found.of(row, lever)[0] for row in range(len(found.pairs)))
     return all(turned * arm < 0.0 for arm in held)
+
+
+def _stayed(watch: Watch) -> bool:
+    """Was the lever on one side of the line of centres, midway between its banks, throughout a run of which all is known?"""
+    assert watch.lever is not None
+    banks = banks_of(watch.run.scene) if watch.run.keep == ALL else None
+    if banks is None:
+        return False
+    off = watch.run.q[:, watch.run.slices[watch.lever].start] - 0.5 * sum(banks)
+    return bool(off.min() * off.max() > 0.0)
 
 
 def _went_over(watch: Watch) -> float:

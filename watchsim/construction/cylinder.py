@@ -297,15 +297,15 @@ def conflicts(values: Cylinder) -> Iterator[Conflict]:
 
 
 def _drive(values: Cylinder, made: Shell) -> Iterator[Conflict]:
-    """The swing A that the drive would keep up if only damping and friction at rest took work: w = π k A² / 2 Q + 2 f A."""
+    """The swing A that the drive would keep up if only damping and friction at rest took work: w = π k A² / 2 Q + 2 f A.
+
+    Only a bound: the balance may swing less, so that too much torque is for the run to say.
+    """
     stiffness = values.balance_inertia * 1e-10 * (math.pi * values.frequency / 3600.0) ** 2
     damping = 0.5 * math.pi * stiffness / values.q_factor
     work = values.torque * 1e-6 * math.radians(values.tooth_width)
     rubbing = values.friction * values.torque * 1e-6 * made.outer / made.distance
     swing = math.degrees((math.sqrt(rubbing**2 + damping * work) - rubbing) / damping)
-    if swing > made.most:
-        words = f"the balance would swing by up to {swing:.4g}°, and at {made.most:.4g}° the other end of the shell comes round"
-        yield Conflict("torque", f"{words}: less torque, or a heavier balance")
     if swing < made.let_off:
         yield Conflict("torque", f"the balance would swing by {swing:.4g}° at most, and let off no tooth: more torque")
 
@@ -315,11 +315,11 @@ def _belly(made: Shell) -> Iterator[Conflict]:
     inside = max(_distances(made, made.rests_inside))
     if inside > made.inner * (1.0 + HAIR):
         words = f"a tooth that rests inside would stand out of the shell by {1e3 * (inside - made.inner):.3g} µm"
-        yield Conflict("drop", f"{words}: more drop, or less lift")
+        yield Conflict("drop", f"{words}: more drop, or a wider tooth")
     outside = min(*_distances(made, made.rests_outside), *_distances(made, made.rests_outside - made.pitch))
     if outside < made.outer * (1.0 - HAIR):
         words = f"the tooth before one that rests outside would be {1e3 * (made.outer - outside):.3g} µm within the shell"
-        yield Conflict("drop", f"{words}: more drop, or less lift")
+        yield Conflict("drop", f"{words}: more drop, or a wider tooth")
 
 
 def _distances(made: Shell, bearing: float) -> list[float]:

@@ -11,7 +11,7 @@ from watchsim.drawing.findings import Finding
 from watchsim.escapement.by_hand import Parts
 from watchsim.escapement.fork_and_pin import Fork, Quantity, Safety
 from watchsim.escapement.impulses import Impulse, Pallet
-from watchsim.escapement.measure import LOCKED, Function, wrong_way
+from watchsim.escapement.measure import LETS_NONE_OFF, LOCKED, Function, wrong_way
 from watchsim.scene.scene import Scene
 from watchsim.units import signed
 
@@ -58,6 +58,10 @@ def findings(scene: Scene, function: Function) -> list[dict[str, object]]:
     """All that is to be said of the geometry of function: a wheel driven the wrong way, and the rules that are not kept."""
     why = wrong_way(scene)
     backwards = [] if why is None else [Finding("wrong-way", "warning", why, "").as_dict()]
+    # What keeps it from being measured keeps it from working.
+    for _, why in function.missing if function.parts is not None and function.parts.detached else ():
+        if why.endswith(LETS_NONE_OFF):
+            backwards.append(Finding("banking", "warning", why, "Open the banking.").as_dict())
     return backwards + [judgement.as_dict() for judgement in judgements(scene, function)]
 
 

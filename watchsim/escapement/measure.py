@@ -80,6 +80,9 @@ def _direct_passage(
     return passage, last
 
 
+LETS_NONE_OFF = "before a tooth is let off"
+
+
 def _passage(wheel: Wheel, sweep: Sweep, side: float, tooth: int, met: float) -> Passage:
     """`met`: where the lever stood (rad) as the tooth dropped onto the stone."""
     locked = _locking(sweep.stretches)
@@ -87,7 +90,7 @@ def _passage(wheel: Wheel, sweep: Sweep, side: float, tooth: int, met: float) ->
     let_offs = sweep.let_offs
     if not let_offs:
         ends = "the lever reaches its other bank" if wheel.parts.detached else f"the examined swing of {wheel.parts.lever} ends"
-        raise NotMeasured(f"{ends} before a tooth is let off")
+        raise NotMeasured(f"{ends} {LETS_NONE_OFF}")
     if any(one.landed is None for one in let_offs):
         raise NotMeasured("a tooth that is let off finds no stone to lock on: the wheel runs free")
     landed = let_offs[-1].landed
@@ -317,6 +320,19 @@ def _balance(
     )
 
 
+def banks_of(scene: Scene) -> tuple[float, float] | None:
+    """The lever's angles (rad) on its upper and its lower bank, whatever the wheel does; None where it has not both."""
+    free = ungeared(scene)
+    compiled = compile_scene(free)
+    parts = parts_of(free, compiled)
+    if isinstance(parts, str) or not len(parts.to_banking):
+        return None
+    upper, lower = (
+        Hands(compiled).touch(parts.lever, parts.to_banking, compiled.q, way, FARTHEST, SLACK) for way in (1.0, -1.0)
+    )
+    return None if upper is None or lower is None else (upper.angle, lower.angle)
+
+
 def finite(value: float) -> bool:
     return bool(np.isfinite(value))
 
@@ -343,10 +359,16 @@ def measured_lift(scene: Scene) -> float | None:
     return 0.5 * (function.swung[0] - function.swung[1])  # it was led half as far again as from let-off to let-off
 
 
+def with_lift(scene: Scene) -> Scene:
+    """The scene with the measured lift angle, so that it is known to keep time; the same where there is none."""
+    lift = measured_lift(scene)
+    return scene if lift is None else replace(scene, lift_angle=lift)
+
+
 def with_measured_lift(run: Trajectory) -> Trajectory:
     """The run as of a scene that names the measured lift angle, so that its beats have phases; the same where there is none."""
-    lift = measured_lift(run.scene)
-    return run if lift is None else replace(run, scene=replace(run.scene, lift_angle=lift))
+    scene = with_lift(run.scene)
+    return run if scene is run.scene else replace(run, scene=scene)
 
 
 # Is the wheel driven the way in which its teeth lock? Driven the other way some anchors and pin levers tick all the same, with

@@ -243,10 +243,11 @@ def _sound_scene(path: Path) -> Scene:
 
 def _numbers(scene: Scene, give: Callable[..., None]) -> tuple[Trajectory | None, Side]:
     """What the scene does, as `watchsim compare` has it; with the run where it took one."""
+    from watchsim.escapement.measure import with_lift
     from watchsim.scene.roles import is_driven, keeps_time
     from watchsim.studies.compare import side_of
 
-    if keeps_time(scene) and is_driven(scene):
+    if keeps_time(with_lift(scene)) and is_driven(scene):
         with contextlib.suppress(SceneError):  # nothing swings on: a run says what happens instead
             return None, side_of(scene)
     run = _run(scene, give)

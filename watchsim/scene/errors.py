@@ -5,9 +5,10 @@ Faults are collected, never thrown one at a time: a designer mends a scene once,
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
+CHANGED = "changed value"  # the place of a value that is in no file
 MOST_SHOWN = 500  # faults in the text of an error
 
 
@@ -36,6 +37,16 @@ class SceneError(ValueError):
             lines.append(f"... and {len(self.faults) - MOST_SHOWN} more faults. Mend these first")
         super().__init__("\n".join(lines))
 
+    def sentence(self, varied: Iterable[str] = ()) -> str:
+        """All faults in one line; of the only key `varied`, which is named beside it, the message alone."""
+        only = set(varied)
+        known = only if len(only) == 1 else set()
+        said = (
+            ("" if one.key in known else f"{one.key}{'' if one.place == CHANGED else one.shown}: ") + one.message
+            for one in self.faults
+        )
+        return "; ".join(" ".join(text.split()).removesuffix(".") for text in said)
+
 
 @dataclass
 class Faults:
@@ -49,7 +60,7 @@ class Faults:
     file: str = ""
     lines: Mapping[str, int] = field(default_factory=dict)
     changed: frozenset[str] = frozenset()
-    by: str = "changed value"
+    by: str = CHANGED
     spelt: dict[str, str] = field(default_factory=dict)
     found: list[Fault] = field(default_factory=list)
     _known: set[Fault] = field(default_factory=set, repr=False)

@@ -16,7 +16,7 @@ from watchsim.drawing.drawing import Profile
 from watchsim.drawing.findings import Finding
 from watchsim.geometry.loops import Loop
 from watchsim.geometry.primitives import Point
-from watchsim.scene.errors import Fault, SceneError
+from watchsim.scene.errors import CHANGED, Fault, SceneError
 from watchsim.scene.forces import Bearing, Contact, Damping, LineSpring, Shock, Spring, Torque
 from watchsim.scene.solids import Solid
 from watchsim.units import LENGTH, Dimension, known_unit, metric, show
@@ -397,5 +397,5 @@ class Scene:
         """
         if self.reader is None:
             message = "this scene was made in Python and has no file to read again. Change it with dataclasses.replace"
-            raise SceneError([Fault(key, message, place="changed value")])
+            raise SceneError([Fault(key, message, place=CHANGED)])
         return self.reader(self, {key: value})

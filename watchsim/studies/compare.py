@@ -14,10 +14,13 @@ from typing import Any
 
 from watchsim.analysis.flows import energy_shares
 from watchsim.analysis.summary import summary
+from watchsim.escapement.measure import with_lift, with_measured_lift
 from watchsim.results.folder import TRAJECTORY, lock_text, read_results, read_summary
 from watchsim.scene.assign import dimension_of
 from watchsim.scene.keys import DESIGN
 from watchsim.scene.load import load
+from watchsim.scene.read_bodies import AS_DRAWN
+from watchsim.scene.read_tolerances import nominal_at
 from watchsim.scene.roles import is_driven, keeps_time, only_presses
 from watchsim.scene.scene import Scene
 from watchsim.scene.toml import digest, parsed
@@ -145,7 +148,7 @@ def with_run(side: Side) -> Side:
 
 
 def _of_scene(scene: Scene, name: str) -> Side:
-    if not (keeps_time(scene) and is_driven(scene)):
+    if not (keeps_time(with_lift(scene)) and is_driven(scene)):
         return _of_run(simulate(scene), name, None)
     cycle = steady(scene)
     found = {**cycle.numbers(), **dict(zip(("multiplier", "multiplier_error"), cycle.left_after_one(), strict=True))}
@@ -153,6 +156,7 @@ def _of_scene(scene: Scene, name: str) -> Side:
 
 
 def _of_run(run: Trajectory, name: str, numbers: dict[str, Any] | None) -> Side:
+    run = with_measured_lift(run)
     known = numbers or summary(run)
     outputs = _numbers(known, (*TIMED, "efficiency"))
     if run.simulated > 0.0:
@@ -218,6 +222,9 @@ def _completed(scene: Scene) -> dict[str, Any]:
         if drawing := entry.get("drawing"):
             mapping["bodies"][name]["drawing"] = f"{Path(drawing).name}, {digest(scene.drawings[drawing])[:SHORT]}"
             mapping["bodies"][name].setdefault("layers", list(scene.body(name).layers))
+        if mapping["bodies"][name].get("position") == AS_DRAWN:
+            places = (nominal_at(scene, f"bodies.{name}.position.{i}") for i in range(2))
+            mapping["bodies"][name]["position"] = [show(float(place), "mm", 12) for place in places]
     return mapping
 
 

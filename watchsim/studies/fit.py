@@ -211,7 +211,7 @@ class Fitting:
             try:
                 found.append(self._decay(changed(self.scene, self.changes(z))))
             except SceneError as error:
-                self.why = " ".join(str(error).split())
+                self.why = error.sentence()
                 found.append(np.full(len(self.given), math.nan))
         return found
 

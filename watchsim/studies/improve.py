@@ -25,6 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.analysis.verdict_kinds import SPOKEN, Verdict
+from watchsim.escapement.measure import with_lift
 from watchsim.scene.errors import SceneError
 from watchsim.scene.load import changed
 from watchsim.scene.roles import keeps_time, nominal_frequency
@@ -213,7 +214,7 @@ class Search:
             scene = changed(self.question.scene, change)
             return function_of(scene, FEW) if self.function else {}
         except SceneError as error:
-            return {"message": " ".join(str(error).split())}
+            return {"message": error.sentence(change)}
 
     def _value(self, output: Any, row: Row, own: Mapping[str, float]) -> float:
         from watchsim.units import to
@@ -539,7 +540,7 @@ class Search:
 
         "" where it works, or where the scene it comes from does not either.
         """
-        still = not self.motion and keeps_time(self.question.scene)
+        still = not self.motion and keeps_time(with_lift(self.question.scene))
         if not still and (self.question.by_shooting or Verdict(self.rows[point.tobytes()].get("verdict")).name is None):
             return ""
         values = ", ".join(f"{one.key} = {one.shown(x)}" for one, x in zip(self.knobs, self.at(point), strict=True))

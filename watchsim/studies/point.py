@@ -115,7 +115,7 @@ def answer(question: Question, changes: Mapping[str, Value], interrupted: Callab
         if row["verdict"] is not None:
             row["message"] = row["message"] or unmeasured
     except SceneError as error:
-        row["message"] = " ".join(str(_in_typed_units(question, changes, error)).split())
+        row["message"] = _in_typed_units(question, changes, error).sentence(changes)
     seconds = row.setdefault("seconds", {})
     seconds["cells"] = row.pop("cells_s", 0.0)
     seconds["motion"] = time.perf_counter() - begun - sum(seconds.values())
