@@ -83,6 +83,12 @@ def test_a_click_without_a_name_is_known_by_its_one_side(tmp_path: Path) -> None
     assert abs(simulate(load(tmp_path / "free"), 1.0).q[-1, 0]) < math.tau / 24  # the other way the click holds it
 
 
+def test_that_a_click_holds_is_not_said_of_what_the_teeth_alone_show(tmp_path: Path) -> None:
+    found = propose([assembly(scene_of("ratchet"), tmp_path / "a.dxf", "own")])
+    (why,) = [guess.why for guess in found.guesses if guess.key == "torques.0.value"]
+    assert "lean the other way, which a click should hold; that it does is not shown" in why
+
+
 def test_a_follower_whose_pivot_lies_behind_it_slides(tmp_path: Path) -> None:
     """An eccentric lifts it by twice its eccentricity, 1.5 mm: at half a turn it stands highest."""
     scene = written([assembly(scene_of("cam"), tmp_path / "a.dxf", "whole")], tmp_path / "out")

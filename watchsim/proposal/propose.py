@@ -387,7 +387,7 @@ def _direction(wheel: Role | None, tasks: set[str], tried: int, because: str) ->
     held = CLICK in tasks and OSCILLATOR not in tasks
     way = "clockwise" if (lean < 0) != held else "counter-clockwise"
     if held:
-        return -lean, f"{way}: the click slides over the backs of the teeth, and holds the other way, to which their tips lean"
+        return -lean, f"{way}: the tips of the teeth lean the other way, which a click should hold; that it does is not shown"
     return lean, f"{way}: the tips of the teeth lean that way"
 
 
