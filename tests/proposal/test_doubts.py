@@ -396,6 +396,16 @@ def test_an_anchor_that_jams_between_two_teeth_is_said_to_and_where(aside: float
     assert math.dist((x, y), (x2, y2)) > 2.0  # a pitch is 3.5 mm
 
 
+def test_a_balance_out_of_reach_of_its_lever_is_the_cause_and_no_inertia(tmp_path: Path) -> None:
+    scene = scene_of("swiss_lever")
+    lever, balance = scene.body("lever"), scene.body("balance")
+    away = tuple(b + 0.12 * (b - a) for a, b in zip(lever.position, balance.position, strict=True))
+    moved = replace(scene, bodies=tuple(replace(one, position=away) if one is balance else one for one in scene.bodies))
+    doubts = tried([assembly(moved, tmp_path / "far.dxf")]).doubts
+    assert any("lever and balance never come within reach of each other" in words for words in doubts)
+    assert not any("other inertias" in words for words in doubts)
+
+
 def test_a_pendulum_drawn_aside_hangs_down_and_beats_by_its_length(tmp_path: Path) -> None:
     """A disc of radius r = 20 mm, d = 250 mm below its pivot, drawn 3° aside: T = 2π √(L/g) with L = (d² + r²/2)/d."""
     lean = math.radians(3.0)

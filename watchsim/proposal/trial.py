@@ -14,9 +14,11 @@ import numpy as np
 from watchsim.analysis.escape_wheel import not_held
 from watchsim.analysis.summary import summary
 from watchsim.analysis.verdict import verdict
+from watchsim.escapement.function_report import findings
 from watchsim.escapement.measure import WASTE, dropped, measure
 from watchsim.escapement.turn import turn
 from watchsim.geometry.primitives import Point
+from watchsim.mechanism.check import notes
 from watchsim.mechanism.overlap import chord_points, placed
 from watchsim.proposal.pieces import ring
 from watchsim.proposal.propose import SCENE, Proposal, propose
@@ -44,6 +46,7 @@ TOGETHER = (
     "with position"
 )
 JAMS = "jams between two teeth"
+BLOCKS = ("shake", "banking", "lock")  # findings of check
 MENDED = "other inertias or another torque may mend what the trial shows"
 CHORD, HELD = 1e-4, 1e-3  # of an outline, of the wheel: its chords, and how near to them something is held
 NEAR = 1.25  # times the swing that a scene starts with: a jam within that is in the way
@@ -80,7 +83,7 @@ def _tried(paths: Sequence[Path]) -> Proposal:
     if here[0] and there[0] and leans:  # the drawing says more than a trial
         if drops[0] > WASTE * drops[1]:
             return propose(paths, other.way, BY_DROP).doubting(faults_there)
-        return found.doubting([*faults, _in_doubt(EITHER_WAY, faults)])
+        return found.doubting([*faults, _in_doubt(EITHER_WAY, faults, found)])
     if here == there:
         return (propose(paths, found.way, ALIKE) if works and not leans else found).doubting(faults)
     if there > here or not leans:
@@ -88,7 +91,7 @@ def _tried(paths: Sequence[Path]) -> Proposal:
         faults = faults_there if there > here else faults
     stepped = CLICK in tasks and DRIVER not in tasks
     if by_function and faults:
-        faults.append(_in_doubt(BY_FUNCTION, faults))
+        faults.append(_in_doubt(BY_FUNCTION, faults, found))
     elif not by_function and (stepped or (there > here and leans and any(role.little for role in found.roles))):
         faults.append(
             f"which way the wheel is driven is a guess: {BY_TRIAL}, with inertias, springs and a torque that are guesses"
@@ -96,9 +99,21 @@ def _tried(paths: Sequence[Path]) -> Proposal:
     return found.doubting(faults)
 
 
-def _in_doubt(why: str, faults: Sequence[str]) -> str:
-    """Why it is driven that way, and what may mend what a trial showed, unless that is an anchor that jams."""
-    return why if any(JAMS in words for words in faults) else f"{why}: {MENDED}"
+def _in_doubt(why: str, faults: Sequence[str], found: Proposal) -> str:
+    """Why it is driven that way, and what may mend what a trial showed, unless the outlines show a cause."""
+    if any(JAMS in words for words in faults):
+        return why
+    causes = list(_by_outlines(found))
+    return f"{why}; but {'; '.join(causes)}" if causes else f"{why}: {MENDED}"
+
+
+def _by_outlines(found: Proposal) -> Iterator[str]:
+    """What no inertia or torque mends, as `check` finds it: parts out of reach, a wheel that jams, no lock, a tight bank."""
+    with tempfile.TemporaryDirectory() as folder:
+        scene = _loaded(found, Path(folder))
+    yield from (one.message for one in notes(scene) if one.code == "apart")
+    measured = findings(scene, measure(scene, few=1))
+    yield from (str(one["message"]) for one in measured if one["severity"] == "warning" and one["code"] in BLOCKS)
 
 
 class _TakesLong(Exception):
