@@ -280,12 +280,12 @@ def gives_no_way(model, closed, i):
 
 
 @kernel
-def is_blocked(model, m, event):
-    """True if a driven body runs into what cannot give way, at one of the m contacts in `event.closed`."""
+def blocked_at(model, m, event):
+    """The one of the m contacts in `event.closed` at which a driven body runs into what cannot give way, or NO_CONTACT."""
     for i in range(m):
         if event.closed.kin[i].gN_dot < -event.zero[i] and gives_no_way(model, event.closed, i):
-            return True
-    return False
+            return event.closed.ids[i]
+    return NO_CONTACT
 
 
 @kernel

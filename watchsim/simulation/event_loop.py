@@ -17,12 +17,12 @@ from watchsim.dynamics.forces import add_drag, forces, next_knot
 from watchsim.jit import entry, kernel
 from watchsim.model import CellsRef, ModelRef
 from watchsim.simulation.closed_contacts import (
+    blocked_at,
     defer_parallel,
     drop_immovable,
     gather,
     hand_over,
     insert,
-    is_blocked,
     is_explained,
     kinetic_energy,
     release_left,
@@ -220,7 +220,9 @@ def resolve(model, state, island, m, options, scratch, record):
     for _ in range(ROUNDS):
         set_rate_zeros(event.closed, m, exactly, options, event.peak_speed, event.zero)
         if jammed or approaching(m, event.closed, event.zero):
-            if is_blocked(model, m, event):
+            blocked = blocked_at(model, m, event)
+            if blocked != NO_CONTACT:
+                state.instant.touched = blocked
                 return Stop.BLOCKED, 0
             jam_speed = options.speed_zero if jammed else 0.0
             if not collide(model, state, island, m, options, jam_speed, scratch, record):

@@ -40,7 +40,7 @@ from watchsim.dynamics.forces import (
 from watchsim.dynamics.moving_frame import add_inertial_forces
 from watchsim.jit import by_reference, entry, inlined, kernel
 from watchsim.model import CellsRef, Model, ModelRef, blank
-from watchsim.simulation.closed_contacts import is_immovable
+from watchsim.simulation.closed_contacts import gives_no_way, is_immovable
 from watchsim.simulation.moreau_percussions import (
     LOAD_SWEEPS,
     Laws,
@@ -178,7 +178,7 @@ def moreau_work(model: Model) -> MoreauWork:
 def closed_at_middle(model, cells, state, options, h, work):
     """The contacts without a gap at the middle of the step, with kinematics, into `work.closed`.
 
-    Returns (Stop code: RUNNING, CELL_UNKNOWN or TOO_MANY_CONTACTS; their number).
+    Returns (Stop code: RUNNING, CELL_UNKNOWN, TOO_MANY_CONTACTS or BLOCKED; their number).
     """
     for i in range(len(state.q)):
         work.q[i] = state.q[i] + 0.5 * h * state.u[i]
@@ -198,7 +198,10 @@ def closed_at_middle(model, cells, state, options, h, work):
                 if m == len(work.closed.ids):
                     return Stop.TOO_MANY_CONTACTS, m
                 contact_kinematics(model, k, work.pose, m, work.closed)
-                if is_immovable(model, work.closed, m):
+                if gives_no_way(model, work.closed, m):
+                    if work.closed.kin[m].gN_dot < -options.speed_zero and not is_immovable(model, work.closed, m):
+                        state.instant.touched = k
+                        return Stop.BLOCKED, m
                     continue
                 m += 1
     return Stop.RUNNING, m

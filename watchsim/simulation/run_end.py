@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Container, Mapping, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -109,11 +109,11 @@ def failure_of(state: State, scratch: Scratch, pairs: Sequence[Pair]) -> dict[st
     }
 
 
-def driven_into(failure: Mapping[str, Any] | None, pairs: Sequence[Pair], driven: Container[str]) -> str:
-    """Which driven body jams which other, and what to change; "" where none takes part in the failed problem."""
+def driven_into(contacts: Iterable[int], pairs: Sequence[Pair], driven: Container[str]) -> str:
+    """Which driven body jams which other at the contacts, and what to change; "" where none takes part in them."""
     found: dict[str, None] = {}  # each sentence once, in order
-    for contact in failure["contacts"] if failure else ():
-        pair = pairs[contact["number"]]
+    for contact in contacts:
+        pair = pairs[contact]
         for own, other in ((pair.body_a, pair.body_b), (pair.body_b, pair.body_a)):
             if own in driven:
                 found[f"{own}, which is driven, leaves {other} no way out at {pair}"] = None

@@ -175,10 +175,10 @@ def _end_state(run: Run) -> SavedState | None:
 
 def _words(run: Run, stop: Stop) -> str:
     """The cause and what is known of where and why; where a driven body jams another, that is the cause."""
+    driven = {body.name for body in run.scene.bodies if body.prescribed is not None}
     if stop == Stop.LCP_FAILED:
-        driven = {body.name for body in run.scene.bodies if body.prescribed is not None}
-        failure = run.failure() if driven else None
-        return driven_into(failure, run.pairs, driven) or stop.sentence
+        failed = run.failure()["contacts"] if driven else ()
+        return driven_into((one["number"] for one in failed), run.pairs, driven) or stop.sentence
     model, bodies = run.compiled.model, [body.name for body in run.scene.bodies]
     details: dict[Stop, Callable[[], str]] = {
         Stop.OVERLAP: run.watch.words,
@@ -187,6 +187,7 @@ def _words(run: Run, stop: Stop) -> str:
         Stop.UNEXPLAINED: lambda: unexplained(run.state, run.pairs),
         Stop.TOO_MANY_EVENTS: run._what_alternates,
         Stop.STEP_TOO_SMALL: lambda: accelerating(run.state, model, bodies, run.pairs),
+        Stop.BLOCKED: lambda: driven_into([int(run.state.instant.touched)], run.pairs, driven),
         Stop.FAR_AWAY: lambda: furthest(run.state, model, bodies),
     }
     words = details[stop]() if stop in details else ""

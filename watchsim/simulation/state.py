@@ -110,10 +110,7 @@ _SENTENCES = {
         "a bearing jams: no friction goes with the load that it makes, for a force on its body passes nearer to the pivot than "
         "friction times radius. A smaller radius or less friction under [[bearings]] helps, or coulomb in place of them"
     ),
-    Stop.BLOCKED: (
-        "a driven body runs into what cannot give way: a motor that stalls is a torque with damping, under [[torques]] and "
-        '[[damping]], in place of motion = "driven"'
-    ),
+    Stop.BLOCKED: "a driven body runs into what cannot give way",
     Stop.STEP_TOO_SMALL: "the step became too small for the requested tolerance",
     Stop.NOT_FINITE: "a coordinate or velocity is no longer a finite number",
     Stop.FAR_AWAY: "a body has gone so far that contacts are lost in the rounding of its position",
